@@ -1,0 +1,24 @@
+# One place for what every target of the project is built with.
+# All includes are written from the project's root: #include "renderer/scene/scene.h".
+
+function(lightwell_flags target)
+  target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+                                           -Woverloaded-virtual -Wimplicit-fallthrough)
+  if(LIGHTWELL_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(LIGHTWELL_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${LIGHTWELL_SANITIZE} -fno-omit-frame-pointer
+                                             -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${LIGHTWELL_SANITIZE})
+  endif()
+endfunction()
+
+# lightwell_library(name GLOB <folder patterns...> PUBLIC <links...> PRIVATE <links...>)
+function(lightwell_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  lightwell_flags(${name})
+  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+endfunction()

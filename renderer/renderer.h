@@ -1,0 +1,119 @@
+// The public face: Scene + FrameRequest -> Frame. One Renderer per device; all calls from the thread that made it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/error.h"
+#include "renderer/gl/device.h"
+#include "renderer/scene/pose.h"
+#include "renderer/scene/scene.h"
+
+namespace lightwell {
+
+class Tracer;
+
+enum class Method { kThesis, kRealtime, kReference };
+enum class Estimator { kCorrected, kLiteral };
+enum class ViewKind { kFinal, kDirect, kIndirect, kAlbedo, kNormal, kDepth, kOcclusionDistance };
+enum class ToneMap { kNeutral, kLinear };
+
+/// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if unknown.
+std::optional<Method> method_from_name(std::string_view name);
+std::optional<Estimator> estimator_from_name(std::string_view name);
+std::optional<ViewKind> view_kind_from_name(std::string_view name);
+std::optional<ToneMap> tone_map_from_name(std::string_view name);
+std::string_view name_of(Method method);
+std::string_view name_of(Estimator estimator);
+std::string_view name_of(ViewKind view);
+std::string_view name_of(ToneMap tone_map);
+
+/// How a picture is made. Ranges are checked by `check_settings`.
+struct Settings {
+  Method method = Method::kThesis;
+  int samples = 32;              // directions per pixel of the indirect map, 1..4096
+  int bounces = 1;               // 0: direct only; 1: first bounce; ... 64
+  int indirect_size = 128;       // the indirect map's longer side in pixels, 8..4096
+  Estimator estimator = Estimator::kCorrected;
+  ViewKind view = ViewKind::kFinal;
+  std::optional<float> exposure_ev;     // fixed exposure (linear scale 2^ev); none: median luminance, smoothed in time
+  ToneMap tone_map = ToneMap::kNeutral;
+  std::uint32_t seed = 0;
+  std::optional<glm::vec3> background;  // linear nit behind everything the camera sees; none: the environment
+  int shadow_size = 512;         // a shadow map's side in pixels, 64..4096
+  int shadow_filter = 3;         // its box filter's width in pixels, odd, 1..15
+  bool denoise = false;          // edge-stopping filter over the indirect map (not in the thesis)
+};
+
+/// The first setting out of range, by its name on the command line; Done if all are good.
+Status check_settings(const Settings& settings, glm::ivec2 size_px);
+
+/// One picture of a scene.
+struct FrameRequest {
+  double time_s = 0.0;
+  PlacedCamera camera;
+  glm::ivec2 size_px{512, 512};
+  Settings settings;
+  bool accumulate = false;    // add to the view's earlier frames of the very same request (scene unchanged): refinement
+  bool want_linear = false;   // Frame::linear_rgb is filled as well: scene-referred, no exposure, no tone curve
+  bool want_display = true;   // Frame::display_rgbx is filled: exposed, tone-mapped, sRGB
+};
+
+struct StageTime {
+  std::string_view name;  // "g-buffer", "shadow maps", "rays", "trace", "shade hits", "gather", "compose", "readback"
+  double ms = 0.0;
+};
+
+struct Frame {
+  glm::ivec2 size_px{0};
+  std::vector<std::uint8_t> display_rgbx;  // 4 bytes a pixel, row 0 at the top
+  std::vector<float> linear_rgb;           // 3 floats a pixel, row 0 at the top
+  float exposure_ev = 0.0f;                // what was applied
+  std::uint32_t accumulated = 1;           // frames in this picture
+  std::vector<StageTime> stages;
+  double total_ms = 0.0;
+  std::uint64_t rays = 0;
+  std::uint64_t triangles = 0;
+};
+
+/// What one viewer's pictures share over time: images of its size, exposure, history. Made by a Renderer,
+/// used and destroyed on its thread, before it.
+class RenderView {
+ public:
+  virtual ~RenderView() = default;
+};
+
+struct RendererOptions {
+  gl::DeviceChoice device;
+  std::string tracer;  // "" (compute on a GPU, else the native one if given), "embree" or "compute"
+  /// Makes the native tracer; the core does not link it. Empty: there is none.
+  std::function<std::unique_ptr<Tracer>()> make_native_tracer;
+};
+
+class Renderer {
+ public:
+  /// Compiles all shaders. Throws gl::NoDevice, or std::runtime_error when a shader or the tracer's name is refused.
+  explicit Renderer(const RendererOptions& options);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  gl::Context& context();
+  std::string_view tracer_name() const;
+
+  std::unique_ptr<RenderView> make_view();
+
+  /// Renders. Bad settings or a scene over the device's limits are errors; the view stays usable.
+  Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lightwell

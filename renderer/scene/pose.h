@@ -1,0 +1,59 @@
+// A scene at one moment: animations applied, hierarchy multiplied out, skins and morph targets deformed.
+// What the renderer draws and traces is a Pose; it never looks at nodes.
+#pragma once
+
+#include "renderer/scene/scene.h"
+
+namespace lightwell {
+
+/// Vertices of a skinned or morphed primitive. World space if skinned, else the node's.
+struct DeformedVertices {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec4> tangents;
+};
+
+/// One primitive placed in the world.
+struct Instance {
+  std::shared_ptr<const Primitive> primitive;  // shares ownership of its mesh; its address identifies the geometry
+  glm::mat4 world_from_object{1.0f};           // identity for skinned primitives
+  int material = -1;
+  int node = -1;
+  int primitive_index = 0;                     // within its mesh; (node, primitive_index) names the instance over time
+  std::shared_ptr<const DeformedVertices> deformed;  // null: rigid
+};
+
+struct PlacedLight {
+  Light light;               // animated values
+  glm::vec3 position_ws{0.0f};
+  glm::vec3 direction_ws{0.0f, 0.0f, -1.0f};  // unit, the way the light shines
+  int node = -1;
+  int index = -1;            // in Scene::lights
+};
+
+struct PlacedCamera {
+  Camera camera;
+  glm::mat4 world_from_view{1.0f};  // rigid: scale removed
+  int node = -1;
+};
+
+struct Pose {
+  std::vector<Instance> instances;
+  std::vector<PlacedLight> lights;
+  std::vector<PlacedCamera> cameras;       // in the order of their nodes
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of all instances, world space; equal when there are none
+};
+
+/// The scene at `time_s` seconds (animations repeat; a negative time counts as 0). Without `time_s` the rest pose.
+Pose pose_at(const Scene& scene, double time_s);
+
+/// Seconds after which all animations repeat: the longest duration; 0 if nothing moves.
+double animation_duration_s(const Scene& scene);
+
+/// A camera that shows all of `pose` from above and the front, for a scene that brings none.
+PlacedCamera frame_camera(const Pose& pose, float aspect_ratio);
+
+/// World matrices of all nodes with animations applied; cycles and missing indices are errors of the loader, not checked here.
+std::vector<glm::mat4> world_from_nodes(const Scene& scene, double time_s);
+
+}  // namespace lightwell

@@ -1,0 +1,81 @@
+// The seam: a buffer of rays in, a buffer of hit records or visibility bits out. Two tracers implement it, Embree on a
+// software device and a compute shader on a GPU; one test holds them against each other.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "renderer/gl/buffer.h"
+#include "renderer/scene/pose.h"
+
+namespace lightwell {
+
+/// std430 layout, 32 bytes; `struct Ray` in shaders/ray.glsl. A ray with t_max < t_min is inactive: a miss at no cost.
+struct Ray {
+  glm::vec3 origin_ws;
+  float t_min;
+  glm::vec3 direction_ws;  // unit
+  float t_max;
+};
+static_assert(sizeof(Ray) == 32);
+
+/// std430 layout, 20 bytes; `struct Hit` in shaders/ray.glsl.
+struct Hit {
+  float t;                  // distance in metres; negative: a miss (the ray sees the environment)
+  std::uint32_t instance;   // in Pose::instances
+  std::uint32_t triangle;   // in Primitive::indices / 3
+  float u, v;               // barycentrics of the second and third vertex
+};
+static_assert(sizeof(Hit) == 20);
+
+constexpr float kMiss = -1.0f;
+
+/// Which triangles count: alpha from the base-colour texture, tested alike by both tracers.
+/// Texel is nearest, wrap as the sampler says; alpha = texel.a * factor (vertex colours are not looked at).
+/// kMask hits where alpha >= cutoff. kBlend hits where alpha > coverage_threshold(instance, triangle, u, v).
+struct Coverage {
+  AlphaMode mode = AlphaMode::kOpaque;
+  float cutoff = 0.5f;
+  float factor = 1.0f;
+  std::shared_ptr<const Image> image;  // null: alpha is `factor` alone
+  TextureUse use;
+  Wrap wrap_s = Wrap::kRepeat, wrap_t = Wrap::kRepeat;
+};
+
+/// What a tracer needs to know of the world in one frame.
+struct TraceScene {
+  std::span<const Instance> instances;
+  std::span<const Coverage> coverage;  // one per instance
+};
+
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+
+  /// "embree" or "compute".
+  virtual std::string_view name() const = 0;
+
+  /// Takes the instances of this frame: hierarchies of new geometry are built and kept, deformed geometry is refitted
+  /// (rebuilt when the refit has degraded), unused geometry is dropped after a while, the top level is built anew.
+  /// Geometry is identified by Instance::primitive's address, deformed geometry by (node, primitive_index) as well.
+  virtual void update(const TraceScene& scene) = 0;
+
+  /// For rays[0, count): the nearest hit with t_min < t < t_max, or t = kMiss. Both sides of a triangle are hit.
+  /// Buffers hold Ray and Hit elements. The call orders itself against GL commands before and after it.
+  virtual void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits) = 0;
+
+  /// For rays[0, count): bit (i % 32) of word (i / 32) of `visible` is 1 where nothing lies between t_min and t_max.
+  virtual void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) = 0;
+
+  /// Bytes held for hierarchies, on whichever side they live.
+  virtual std::uint64_t memory_bytes() const = 0;
+};
+
+/// The tracer that never leaves the device.
+std::unique_ptr<Tracer> make_compute_tracer();
+
+}  // namespace lightwell
