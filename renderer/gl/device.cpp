@@ -1,12 +1,13 @@
 #include "renderer/gl/device.h"
 
+#define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
 #include <algorithm>
 #include <charconv>
 #include <mutex>
-#include <optional>
+#include <utility>
 
 #include "renderer/gl/gl.h"
 
