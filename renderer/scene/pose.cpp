@@ -1,0 +1,304 @@
+#include "renderer/scene/pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "renderer/scene/animation.h"
+#include "renderer/scene/deform.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int kNone = -1;
+
+std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// What animations change, for one moment.
+struct AnimatedState {
+  std::vector<Transform> locals;            // one per node
+  std::vector<std::vector<float>> weights;  // one per node if any channel animates weights, else empty
+  std::vector<Light> lights;
+};
+
+void apply_channel(const AnimationChannel& channel, float time_s, AnimatedState& state) {
+  if (channel.node < 0 || index(channel.node) >= state.locals.size()) return;
+  Transform& local = state.locals[index(channel.node)];
+  switch (channel.property) {
+    case AnimatedProperty::kTranslation:
+      sample_keyframes(channel.times_s, channel.values, channel.interpolation, time_s, {&local.translation.x, 3});
+      break;
+    case AnimatedProperty::kScale:
+      sample_keyframes(channel.times_s, channel.values, channel.interpolation, time_s, {&local.scale.x, 3});
+      break;
+    case AnimatedProperty::kRotation:
+      sample_rotation(channel.times_s, channel.values, channel.interpolation, time_s, local.rotation);
+      break;
+    case AnimatedProperty::kWeights: {
+      state.weights.resize(state.locals.size());
+      std::vector<float>& weights = state.weights[index(channel.node)];
+      weights.resize(index(std::max(channel.width, 0)));
+      if (!sample_keyframes(channel.times_s, channel.values, channel.interpolation, time_s, weights)) weights.clear();
+      break;
+    }
+  }
+}
+
+void apply_channel(const LightChannel& channel, float time_s, AnimatedState& state) {
+  if (channel.light < 0 || index(channel.light) >= state.lights.size()) return;
+  Light& light = state.lights[index(channel.light)];
+  const bool is_color = channel.property == LightChannel::Property::kColor;
+  const std::span<float> value = is_color ? std::span<float>(&light.color.x, 3) : std::span<float>(&light.intensity, 1);
+  if (!sample_keyframes(channel.times_s, channel.values, channel.interpolation, time_s, value)) return;
+  for (float& v : value) v = std::max(v, 0.0f);  // a cubic spline may swing below zero; light cannot
+}
+
+AnimatedState animate(const Scene& scene, double time_s) {
+  AnimatedState state;
+  state.locals.reserve(scene.nodes.size());
+  for (const Node& node : scene.nodes) state.locals.push_back(node.local);
+  state.lights = scene.lights;
+  for (const Animation& animation : scene.animations) {
+    const float local_s = local_time_s(time_s, animation.duration_s);
+    for (const AnimationChannel& channel : animation.channels) apply_channel(channel, local_s, state);
+    for (const LightChannel& channel : animation.light_channels) apply_channel(channel, local_s, state);
+  }
+  return state;
+}
+
+glm::mat4 matrix_of(const Transform& t) {
+  glm::mat4 matrix = glm::mat4_cast(t.rotation);
+  matrix[0] *= t.scale.x;
+  matrix[1] *= t.scale.y;
+  matrix[2] *= t.scale.z;
+  matrix[3] = glm::vec4(t.translation, 1.0f);
+  return matrix;
+}
+
+/// Nodes in an order in which parents precede their children; nodes that no root leads to are left out.
+std::vector<int> parents_first(const Scene& scene) {
+  std::vector<int> order;
+  order.reserve(scene.nodes.size());
+  order.assign(scene.roots.begin(), scene.roots.end());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::vector<int>& children = scene.nodes[index(order[i])].children;
+    order.insert(order.end(), children.begin(), children.end());
+  }
+  return order;
+}
+
+std::vector<glm::mat4> multiply_out(const Scene& scene, const std::vector<int>& order,
+                                    const std::vector<Transform>& locals) {
+  std::vector<glm::mat4> world(scene.nodes.size(), glm::mat4(1.0f));
+  for (const int i : order) {
+    const Node& node = scene.nodes[index(i)];
+    const glm::mat4 local = node.matrix ? *node.matrix : matrix_of(locals[index(i)]);
+    world[index(i)] = node.parent == kNone ? local : world[index(node.parent)] * local;
+  }
+  return world;
+}
+
+glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& fallback) {
+  const float squared = glm::dot(v, v);
+  return squared > 0.0f && std::isfinite(squared) ? v * (1.0f / std::sqrt(squared)) : fallback;
+}
+
+/// The rigid placement nearest to `matrix` that keeps its viewing direction and the side that is up.
+glm::mat4 without_scale(const glm::mat4& matrix) {
+  const glm::vec3 back = unit_or(glm::vec3(matrix[2]), {0.0f, 0.0f, 1.0f});
+  const glm::vec3 any_right =
+      std::abs(back.y) < 0.9f ? glm::cross({0.0f, 1.0f, 0.0f}, back) : glm::cross({0.0f, 0.0f, -1.0f}, back);
+  const glm::vec3 right = unit_or(glm::cross(glm::vec3(matrix[1]), back), glm::normalize(any_right));
+  return glm::mat4(glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f), glm::vec4(back, 0.0f),
+                   glm::vec4(glm::vec3(matrix[3]), 1.0f));
+}
+
+struct Bounds {
+  glm::vec3 min{std::numeric_limits<float>::max()}, max{-std::numeric_limits<float>::max()};
+
+  void add(const glm::vec3& point) {
+    min = glm::min(min, point);
+    max = glm::max(max, point);
+  }
+  /// The box around the box `low`..`high` after an affine transform.
+  void add_box(const glm::mat4& world_from_box, const glm::vec3& low, const glm::vec3& high) {
+    const glm::vec3 center = glm::vec3(world_from_box * glm::vec4(0.5f * (low + high), 1.0f));
+    const glm::vec3 half = 0.5f * (high - low);
+    const glm::vec3 reach = glm::abs(glm::vec3(world_from_box[0])) * half.x +
+                            glm::abs(glm::vec3(world_from_box[1])) * half.y +
+                            glm::abs(glm::vec3(world_from_box[2])) * half.z;
+    add(center - reach);
+    add(center + reach);
+  }
+};
+
+Bounds bounds_of(const std::vector<glm::vec3>& points) {
+  Bounds bounds;
+  for (const glm::vec3& point : points) bounds.add(point);
+  return bounds;
+}
+
+/// Places meshes, lights and cameras of nodes one after another.
+class PoseBuilder {
+ public:
+  PoseBuilder(const Scene& scene, const AnimatedState& state, const std::vector<glm::mat4>& world)
+      : scene_(scene), state_(state), world_(world) {}
+
+  void add_meshes(int n) {
+    const Node& node = scene_.nodes[index(n)];
+    if (node.mesh == kNone) return;
+    const std::shared_ptr<const Mesh>& mesh = scene_.meshes[index(node.mesh)];
+    const std::span<const float> weights = morph_weights(n, *mesh);
+    joint_matrices_.clear();  // made by the first primitive that needs them
+    for (std::size_t i = 0; i < mesh->primitives.size(); ++i) add_primitive(n, mesh, i, weights);
+  }
+
+  void add_light(int n) {
+    const Node& node = scene_.nodes[index(n)];
+    if (node.light == kNone) return;
+    const glm::mat4& world = world_[index(n)];
+    pose_.lights.push_back({state_.lights[index(node.light)], glm::vec3(world[3]),
+                            unit_or(-glm::vec3(world[2]), {0.0f, 0.0f, -1.0f}), n, node.light});
+  }
+
+  void add_camera(int n) {
+    const Node& node = scene_.nodes[index(n)];
+    if (node.camera == kNone) return;
+    pose_.cameras.push_back({scene_.cameras[index(node.camera)], without_scale(world_[index(n)]), n});
+  }
+
+  Pose finish() && {
+    if (bounds_.min.x <= bounds_.max.x) {
+      pose_.bounds_min = bounds_.min;
+      pose_.bounds_max = bounds_.max;
+    }
+    return std::move(pose_);
+  }
+
+ private:
+  std::span<const float> morph_weights(int n, const Mesh& mesh) const {
+    if (!state_.weights.empty() && !state_.weights[index(n)].empty()) return state_.weights[index(n)];
+    const std::vector<float>& own = scene_.nodes[index(n)].weights;
+    return own.empty() ? mesh.weights : own;
+  }
+
+  std::span<const glm::mat4> joint_matrices(const Skin& skin) {
+    if (joint_matrices_.empty()) {
+      joint_matrices_.reserve(skin.joints.size());
+      for (std::size_t j = 0; j < skin.joints.size(); ++j)
+        joint_matrices_.push_back(j < skin.joint_from_mesh.size()
+                                      ? world_[index(skin.joints[j])] * skin.joint_from_mesh[j]
+                                      : world_[index(skin.joints[j])]);
+    }
+    return joint_matrices_;
+  }
+
+  void add_primitive(int n, const std::shared_ptr<const Mesh>& mesh, std::size_t i, std::span<const float> weights) {
+    const Primitive& primitive = mesh->primitives[i];
+    Instance instance{{mesh, &primitive}, world_[index(n)], primitive.material, n, static_cast<int>(i), nullptr};
+    const int skin_index = scene_.nodes[index(n)].skin;
+    const bool skinned = skin_index != kNone && !primitive.joints.empty() && !primitive.weights.empty() &&
+                         !scene_.skins[index(skin_index)].joints.empty();
+    if (skinned || !primitive.morph_targets.empty()) {
+      auto deformed = std::make_shared<DeformedVertices>(morph(primitive, weights));
+      if (skinned) {
+        skin(primitive, joint_matrices(scene_.skins[index(skin_index)]), *deformed);
+        instance.world_from_object = glm::mat4(1.0f);
+      }
+      const Bounds bounds = bounds_of(deformed->positions);
+      if (!deformed->positions.empty()) bounds_.add_box(instance.world_from_object, bounds.min, bounds.max);
+      instance.deformed = std::move(deformed);
+    } else if (!primitive.positions.empty()) {
+      bounds_.add_box(instance.world_from_object, primitive.bounds_min, primitive.bounds_max);
+    }
+    pose_.instances.push_back(std::move(instance));
+  }
+
+  const Scene& scene_;
+  const AnimatedState& state_;
+  const std::vector<glm::mat4>& world_;
+  std::vector<glm::mat4> joint_matrices_;
+  Bounds bounds_;
+  Pose pose_;
+};
+
+/// Per node: neither it nor a node above it is hidden.
+std::vector<bool> visible_nodes(const Scene& scene, const std::vector<int>& order) {
+  std::vector<bool> visible(scene.nodes.size(), false);
+  for (const int i : order) {
+    const Node& node = scene.nodes[index(i)];
+    visible[index(i)] = node.visible && (node.parent == kNone || visible[index(node.parent)]);
+  }
+  return visible;
+}
+
+}  // namespace
+
+std::vector<glm::mat4> world_from_nodes(const Scene& scene, double time_s) {
+  return multiply_out(scene, parents_first(scene), animate(scene, time_s).locals);
+}
+
+double animation_duration_s(const Scene& scene) {
+  double duration_s = 0.0;
+  for (const Animation& animation : scene.animations)
+    duration_s = std::max(duration_s, static_cast<double>(animation.duration_s));
+  return duration_s;
+}
+
+Pose pose_at(const Scene& scene, double time_s) {
+  const AnimatedState state = animate(scene, time_s);
+  const std::vector<int> order = parents_first(scene);
+  const std::vector<glm::mat4> world = multiply_out(scene, order, state.locals);
+  const std::vector<bool> visible = visible_nodes(scene, order);
+
+  PoseBuilder builder(scene, state, world);
+  for (int n = 0; index(n) < scene.nodes.size(); ++n) {
+    builder.add_camera(n);  // a hidden node's camera still counts: hiding a thing must not renumber the cameras
+    if (!visible[index(n)]) continue;
+    builder.add_meshes(n);
+    builder.add_light(n);
+  }
+  return std::move(builder).finish();
+}
+
+PlacedCamera frame_camera(const Pose& pose, float aspect_ratio) {
+  PlacedCamera placed;
+  placed.camera.name = "framed";
+  placed.camera.yfov = 0.7f;
+  placed.camera.aspect_ratio = aspect_ratio;
+  const glm::vec3 center = 0.5f * (pose.bounds_min + pose.bounds_max);
+  const float radius = 0.5f * glm::length(pose.bounds_max - pose.bounds_min);
+  const glm::vec3 half = radius > 0.0f ? 0.5f * (pose.bounds_max - pose.bounds_min) : glm::vec3(1.0f);
+
+  // From the front, a little from the right and from above: three sides of a box are seen.
+  const glm::vec3 back = glm::normalize(glm::vec3(0.5f, 0.45f, 1.0f));
+  const glm::vec3 right = glm::normalize(glm::cross({0.0f, 1.0f, 0.0f}, back));
+  const glm::vec3 up = glm::cross(back, right);
+
+  // A point is inside the frustum of an eye at e when |p.x - e.x| <= (e.z - p.z) * tan_x, likewise in y: linear in e,
+  // so the nearest eye that sees all eight corners has a closed form in each axis.
+  constexpr float kFilled = 0.94f;  // the rest is margin
+  const float tan_y = kFilled * std::tan(0.5f * placed.camera.yfov);
+  const glm::vec2 tangent(tan_y * std::max(aspect_ratio, 1e-3f), tan_y);
+  glm::vec2 high(-std::numeric_limits<float>::max()), low(std::numeric_limits<float>::max());
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 offset = half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const glm::vec2 across(glm::dot(offset, right), glm::dot(offset, up));
+    const float depth = glm::dot(offset, back);
+    high = glm::max(high, across + depth * tangent);
+    low = glm::min(low, across - depth * tangent);
+  }
+  const glm::vec2 distance = (high - low) / (2.0f * tangent);
+  const glm::vec2 across = 0.5f * (high + low);
+  const float away = std::max(distance.x, distance.y);
+  const glm::vec3 eye = center + across.x * right + across.y * up + away * back;
+  placed.camera.znear = 0.01f * glm::length(half);
+  placed.world_from_view =
+      glm::mat4(glm::vec4(right, 0.0f), glm::vec4(up, 0.0f), glm::vec4(back, 0.0f), glm::vec4(eye, 1.0f));
+  return placed;
+}
+
+}  // namespace lightwell
