@@ -1,0 +1,123 @@
+// The built-in scenes are sound: finite, closed the right way round, and as large as they say.
+#include "renderer/scene/builtin.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderer/scene/pose.h"
+
+namespace lightwell {
+namespace {
+
+class BuiltinScene : public testing::TestWithParam<std::string> {
+ protected:
+  const Scene scene_ = builtin_scene(GetParam()).value();
+};
+
+INSTANTIATE_TEST_SUITE_P(All, BuiltinScene, testing::ValuesIn(builtin_scene_names()),
+                         [](const auto& tested) { return tested.param; });
+
+TEST_P(BuiltinScene, EveryPrimitiveIsSound) {
+  for (const auto& mesh : scene_.meshes)
+    for (const Primitive& primitive : mesh->primitives) {
+      SCOPED_TRACE(mesh->name);
+      const std::size_t count = primitive.positions.size();
+      ASSERT_EQ(primitive.normals.size(), count);
+      ASSERT_EQ(primitive.tangents.size(), count);
+      ASSERT_GT(primitive.indices.size(), 0u);
+      ASSERT_EQ(primitive.indices.size() % 3, 0u);
+      ASSERT_GE(primitive.material, 0);
+      ASSERT_LT(static_cast<std::size_t>(primitive.material), scene_.materials.size());
+      glm::vec3 low = primitive.positions[0], high = low;
+      for (std::size_t i = 0; i < count; ++i) {
+        low = glm::min(low, primitive.positions[i]);
+        high = glm::max(high, primitive.positions[i]);
+        ASSERT_NEAR(glm::length(primitive.normals[i]), 1.0f, 1e-4f);
+        ASSERT_NEAR(glm::length(glm::vec3(primitive.tangents[i])), 1.0f, 1e-4f);
+        ASSERT_NEAR(glm::dot(glm::vec3(primitive.tangents[i]), primitive.normals[i]), 0.0f, 1e-3f);
+        ASSERT_EQ(std::abs(primitive.tangents[i].w), 1.0f);
+      }
+      EXPECT_EQ(low, primitive.bounds_min);
+      EXPECT_EQ(high, primitive.bounds_max);
+      for (const std::uint32_t i : primitive.indices) ASSERT_LT(i, count);
+    }
+}
+
+/// No sliver without area, and the shading normals are on the side that the winding calls the front.
+TEST_P(BuiltinScene, TrianglesFaceAsTheirNormalsDo) {
+  for (const auto& mesh : scene_.meshes)
+    for (const Primitive& primitive : mesh->primitives) {
+      SCOPED_TRACE(mesh->name);
+      for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+        const auto at = [&](std::size_t corner) { return primitive.indices[i + corner]; };
+        const glm::vec3 a = primitive.positions[at(0)];
+        const glm::vec3 n = glm::cross(primitive.positions[at(1)] - a, primitive.positions[at(2)] - a);
+        ASSERT_GT(glm::length(n), 1e-9f) << "triangle " << i / 3;
+        for (std::size_t corner = 0; corner < 3; ++corner)
+          ASSERT_GT(glm::dot(glm::normalize(n), primitive.normals[at(corner)]), 0.0f) << "triangle " << i / 3;
+      }
+    }
+}
+
+TEST_P(BuiltinScene, HasACameraAndLightThatFloat16Holds) {
+  EXPECT_FALSE(scene_.cameras.empty());
+  const bool has_sky = scene_.environment.zenith_radiance != glm::vec3(0.0f);
+  EXPECT_TRUE(!scene_.lights.empty() || has_sky);
+  for (const Light& light : scene_.lights) EXPECT_LT(light.intensity, 20000.0f);
+  for (const Material& material : scene_.materials) EXPECT_LT(material.emissive_strength, 20000.0f);
+}
+
+TEST_P(BuiltinScene, EveryPoseIsFiniteAndRepeats) {
+  const double duration_s = animation_duration_s(scene_);
+  for (const double time_s : {0.0, 1.3, 0.77 * duration_s}) {
+    const Pose pose = pose_at(scene_, time_s), again = pose_at(scene_, time_s + duration_s);
+    ASSERT_TRUE(std::isfinite(glm::length(pose.bounds_min)) && std::isfinite(glm::length(pose.bounds_max)));
+    for (std::size_t i = 0; i < pose.instances.size(); ++i)
+      for (int c = 0; c < 4; ++c)
+        ASSERT_LT(glm::length(pose.instances[i].world_from_object[c] - again.instances[i].world_from_object[c]), 1e-2f);
+    for (std::size_t i = 0; i < pose.lights.size(); ++i)
+      ASSERT_LT(glm::length(pose.lights[i].direction_ws - again.lights[i].direction_ws), 1e-3f);
+  }
+}
+
+TEST(Builtin, UnknownNamesAreNotFoundAndNameWhatThereIs) {
+  const Result<Scene> result = builtin_scene("teapot");
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().kind, ErrorKind::kNotFound);
+  EXPECT_NE(result.error().message().find("cornell"), std::string::npos);
+}
+
+TEST(Builtin, CornellIsSmallAndStill) {
+  const Scene scene = builtin_scene("cornell").value();
+  EXPECT_GE(count_triangles(scene), 32u);
+  EXPECT_LE(count_triangles(scene), 36u);
+  EXPECT_EQ(animation_duration_s(scene), 0.0);
+  const Pose pose = pose_at(scene, 0);
+  EXPECT_NEAR(pose.bounds_max.y - pose.bounds_min.y, 2.0f, 0.01f);
+}
+
+TEST(DefaultLight, IsAddedOnlyWhereNothingShines) {
+  Scene dark;
+  EXPECT_TRUE(add_default_light(dark));
+  const Pose pose = pose_at(dark, 0);
+  ASSERT_EQ(pose.lights.size(), 1u);
+  const PlacedLight& sun = pose.lights[0];
+  const Environment& sky = dark.environment;
+  const float sun_lux = sun.light.intensity * -sun.direction_ws.y;
+  const float sky_lux =
+      3.14159265f * glm::dot(0.5f * (sky.zenith_radiance + sky.horizon_radiance), glm::vec3(1.0f / 3));
+  EXPECT_NEAR(sun_lux / sky_lux, 3.0f, 0.5f);
+  EXPECT_FALSE(add_default_light(dark));
+
+  Scene glowing;
+  glowing.materials.emplace_back();
+  glowing.materials[0].emissive_factor = glm::vec3(0.1f);
+  EXPECT_FALSE(add_default_light(glowing));
+  Scene under_sky;
+  under_sky.environment.image = std::make_shared<ImageHdr>();
+  EXPECT_FALSE(add_default_light(under_sky));
+}
+
+}  // namespace
+}  // namespace lightwell
