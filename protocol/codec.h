@@ -26,7 +26,7 @@ Decoded<SessionPatch> parse_session_patch(std::string_view body);
 Decoded<FrameQuery> parse_frame_query(std::span<const std::pair<std::string, std::string>> query);
 
 /// A text message of the stream. What a client sends may have no unknown members; what a server sends may (a newer
-/// server says more), and they are ignored.
+/// server says more), and they are ignored; it may have 16 MiB, since a welcome lists every scene and light.
 Decoded<ClientMessage> parse_client_message(std::string_view text);
 Decoded<ServerMessage> parse_server_message(std::string_view text);
 

@@ -163,6 +163,9 @@ void read_message(ObjectReader& object, Bye& out) {
   object.required("reconnect", out.reconnect, read_boolean);
 }
 
+/// A welcome lists every scene and light.
+constexpr JsonLimits kServerLimits{.max_bytes = 16u << 20, .max_depth = 32, .max_values = 2'000'000};
+
 template <class Variant>
 using ReadAny = void (*)(ObjectReader&, Variant&);
 
@@ -189,8 +192,8 @@ constexpr std::array kServerKinds{kind<Welcome, ServerMessage>("welcome"),
 
 template <class Variant, std::size_t count>
 Decoded<Variant> parse_text(std::string_view text, const std::array<MessageKind<Variant>, count>& kinds,
-                            UnknownMembers unknown_members) {
-  const Decoded<Json> json = parse_json(text);
+                            UnknownMembers unknown_members, const JsonLimits& limits) {
+  const Decoded<Json> json = parse_json(text, limits);
   if (!json) return json.problem();
   Reading reading(unknown_members);
   const Value value{*json, {}, reading};
@@ -212,11 +215,11 @@ Decoded<Variant> parse_text(std::string_view text, const std::array<MessageKind<
 }  // namespace
 
 Decoded<ClientMessage> parse_client_message(std::string_view text) {
-  return parse_text(text, kClientKinds, UnknownMembers::kRefused);
+  return parse_text(text, kClientKinds, UnknownMembers::kRefused, {});
 }
 
 Decoded<ServerMessage> parse_server_message(std::string_view text) {
-  return parse_text(text, kServerKinds, UnknownMembers::kIgnored);
+  return parse_text(text, kServerKinds, UnknownMembers::kIgnored, kServerLimits);
 }
 
 }  // namespace lightwell::protocol
