@@ -2,16 +2,22 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "renderer/error.h"
 #include "renderer/scene/scene.h"
 
 namespace lightwell {
 
-/// Decodes a PNG or JPEG (whatever OpenImageIO reads) from memory to RGBA8. Refuses more than `max_pixels`.
+/// Decodes a PNG or JPEG, the two formats of glTF, from memory to RGBA8: grey is spread over RGB, what has no alpha is
+/// opaque, alpha stays straight (colours are not multiplied by it), 16 bits become 8, CMYK becomes RGB. The size is
+/// read from the file's own header and refused with kTooLarge above `max_pixels` before anything is decoded.
+/// Data in any other format is kUnsupported; broken or truncated data is kInvalidInput.
 Result<Image> decode_image(std::span<const std::byte> bytes, std::uint64_t max_pixels);
 
 /// A floating-point picture, row 0 at the top, `channels` interleaved values a pixel (3 or 4).
@@ -21,10 +27,17 @@ struct FloatImage {
   std::vector<float> pixels;
 };
 
-/// Reads any image file as linear floats: .exr and .hdr as they are, 8-bit files decoded from sRGB.
+/// The most pixels read_image accepts.
+inline constexpr std::uint64_t kMaxReadPixels = 16384ull * 16384;
+
+/// Reads any image file as linear floats: .exr and .hdr as they are, integer files decoded from sRGB. Grey is spread
+/// over RGB; channels beyond alpha are left out; alpha is as the file has it. NaN and infinities are kept, so that a
+/// comparison can find them: whoever needs finite values must look.
+/// A missing file is kNotFound, one of more than kMaxReadPixels is kTooLarge.
 Result<FloatImage> read_image(const std::filesystem::path& path);
 
-/// Writes scene-referred linear .exr (half or float by `float32`); metadata goes into the header as strings.
+/// Writes scene-referred linear .exr (32-bit floats, or half by `float32`); metadata goes into the header as strings.
+/// The same picture and metadata give the same bytes: no time of writing is recorded.
 Status write_exr(const std::filesystem::path& path, const FloatImage& image,
                  const std::map<std::string, std::string>& metadata = {}, bool float32 = true);
 
@@ -32,10 +45,10 @@ Status write_exr(const std::filesystem::path& path, const FloatImage& image,
 Status write_ldr(const std::filesystem::path& path, glm::ivec2 size_px, std::span<const std::uint8_t> rgb,
                  int jpeg_quality = 95);
 
-/// The same in memory. `format` is "png", "jpg" or "exr" (exr takes linear floats instead).
+/// The same in memory. `format` is "png" or "jpg" (or "jpeg").
 Result<std::vector<std::byte>> encode_ldr(const std::string& format, glm::ivec2 size_px,
                                           std::span<const std::uint8_t> rgb, int jpeg_quality = 95);
 Result<std::vector<std::byte>> encode_exr(const FloatImage& image,
-                                          const std::map<std::string, std::string>& metadata = {});
+                                          const std::map<std::string, std::string>& metadata = {}, bool float32 = true);
 
 }  // namespace lightwell
