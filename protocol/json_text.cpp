@@ -85,11 +85,12 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
     return false;
   }
 
+  /// Of the value that comes next: what is open within an array is its last element already.
   std::string pointer() const {
     std::string text;
     for (const Open& level : open_) {
-      const bool in_object = level.value->is_object();
-      text += '/' + (in_object ? escape_pointer_token(level.name) : std::to_string(level.value->size()));
+      const std::size_t index = level.value->size() - (&level == &open_.back() ? 0 : 1);
+      text += '/' + (level.value->is_object() ? escape_pointer_token(level.name) : std::to_string(index));
     }
     return text;
   }

@@ -36,6 +36,14 @@ void check_edit(const Value& edit) {
   if (takes_value && !edit.json.contains("value")) edit.fail("the member \"value\" is missing");
 }
 
+void read_color(const Value& value, Vector3& out) {
+  Vector3 color;
+  read_numbers<3>(value, color);
+  for (std::size_t channel = 0; channel < 3 && !value.reading.failed(); ++channel)
+    ReadNumber{0, kLargestFloat}(value.element(channel), color[channel]);
+  if (!value.reading.failed()) out = color;
+}
+
 template <class Enum>
 void read_name(const Value& value, Enum& out, std::optional<Enum> (*from_name)(std::string_view), const char* names) {
   if (!value.json.is_string()) return value.fail("must be a string, not " + in_words(value.json));
@@ -93,11 +101,7 @@ void read_settings(const Value& value, SettingsSpec& out) {
   object.optional("exposure_ev", settings.exposure_ev, ReadNullable{ReadNumber{-64, 64}});
   object.optional("tone_map", settings.tone_map, read_token);
   object.optional("seed", settings.seed, ReadInteger<std::uint32_t>{0, 0xffffffff});
-  object.optional("background", settings.background, ReadNullable{[](const Value& color, Vector3& rgb) {
-                    read_numbers<3>(color, rgb);
-                    if (std::any_of(rgb.begin(), rgb.end(), [](double channel) { return channel < 0; }))
-                      color.fail("must not have a negative channel");
-                  }});
+  object.optional("background", settings.background, ReadNullable{read_color});
   object.optional("shadow_size", settings.shadow_size, at_least_one);
   object.optional("shadow_filter", settings.shadow_filter, at_least_one);
   object.optional("denoise", settings.denoise, read_boolean);
