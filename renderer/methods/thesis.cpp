@@ -1,0 +1,127 @@
+#include "renderer/methods/thesis.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lightwell {
+
+namespace {
+
+// Rays in flight at once: 32 MiB of rays on the device, whatever the settings.
+constexpr std::uint32_t kMostRays = 1u << 20;
+
+std::uint32_t directions_per_batch(const IndirectMapGrid& grid, int samples) {
+  return std::clamp(kMostRays / grid.pixels(), 1u, static_cast<std::uint32_t>(samples));
+}
+
+// The van der Corput and Halton points: where in its block the representative pixel lies in the n-th frame.
+float radical_inverse(std::uint32_t n, std::uint32_t base) {
+  float value = 0.0f, scale = 1.0f / static_cast<float>(base);
+  for (; n > 0; n /= base, scale /= static_cast<float>(base)) value += static_cast<float>(n % base) * scale;
+  return value;
+}
+
+IndirectMapGrid make_grid(const FrameContext& frame) {
+  IndirectMapGrid grid = IndirectMapGrid::over(frame.size_px, frame.settings.indirect_size);
+  if (frame.frame_number > 0)
+    grid.jitter = {radical_inverse(frame.frame_number, 2), radical_inverse(frame.frame_number, 3)};
+  return grid;
+}
+
+}  // namespace
+
+ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
+    : g_buffer_pass_(shaders),
+      shadow_maps_pass_(shaders),
+      direct_light_pass_(shaders),
+      directions_pass_(shaders, buffers),
+      hit_light_pass_(shaders),
+      gather_pass_(shaders),
+      filter_pass_(shaders),
+      add_maps_pass_(shaders),
+      resolve_pass_(shaders) {
+  occlusion_.hits = gl::Buffer("hits", 0, buffers);
+}
+
+const Picture& ThesisMethod::render(FrameContext& frame) {
+  const IndirectMapGrid grid = make_grid(frame);
+  resize(frame, grid);
+  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number);
+  frame.timer.mark("g-buffer");
+  const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose);
+  frame.timer.mark("shadow maps");
+  const DirectRadiance& direct = direct_light_pass_.run(g_buffer, shadows);
+  frame.timer.mark("direct light");
+  const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
+  const Picture& picture = resolve_pass_.run(g_buffer, direct, indirect, gather_pass_.occlusion_distance(),
+                                             frame.settings.view, frame.accumulate);
+  frame.timer.mark("compose");
+  return picture;
+}
+
+void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid) {
+  g_buffer_pass_.resize(frame.size_px);
+  shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
+                           ShadowMapsPass::layers_for(frame.pose));
+  direct_light_pass_.resize(frame.size_px);
+  resolve_pass_.resize(frame.size_px);
+  const std::uint32_t most_rays = grid.pixels() * directions_per_batch(grid, frame.settings.samples);
+  directions_pass_.resize(most_rays);
+  hit_light_pass_.resize(most_rays);
+  occlusion_.hits.reserve(std::uint64_t{most_rays} * sizeof(Hit));
+  gather_pass_.resize(grid.map_size_px);
+  filter_pass_.resize(grid.map_size_px);
+  if (all_bounces_.image && all_bounces_.image.size_px() == grid.map_size_px) return;
+  bounce_ = make_indirect_map(grid.map_size_px);
+  previous_bounce_ = make_indirect_map(grid.map_size_px);
+  all_bounces_ = make_indirect_map(grid.map_size_px);
+}
+
+const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuffer& g_buffer,
+                                                const ShadowMaps& shadows, const IndirectMapGrid& grid) {
+  if (frame.settings.bounces == 0) {
+    all_bounces_.image.clear(glm::vec4(0.0f));
+    return all_bounces_;
+  }
+  traced_ = false;
+  for (int bounce = 1; bounce <= frame.settings.bounces; ++bounce) {
+    gather_bounce(frame, g_buffer, shadows, grid, bounce);
+    if (frame.settings.denoise) {
+      filter_pass_.run(g_buffer, grid, bounce_);
+      frame.timer.mark("filter");
+    }
+    add_maps_pass_.run(bounce_, all_bounces_, bounce == 1);
+    std::swap(bounce_, previous_bounce_);
+    frame.timer.mark("gather");
+  }
+  return all_bounces_;
+}
+
+// All directions of one bounce, in batches. A single batch is traced once for all bounces.
+void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                                 const IndirectMapGrid& grid, int bounce) {
+  const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
+  const std::uint32_t batch = directions_per_batch(grid, frame.settings.samples);
+  const bool literal = frame.settings.estimator == Estimator::kLiteral;
+  const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
+  const Directions* directions = nullptr;
+  for (std::uint32_t first = 0; first < samples; first += batch) {
+    directions = &directions_pass_.run(g_buffer, grid, first, std::min(batch, samples - first), seed);
+    frame.timer.mark("directions");
+    if (!traced_ || traced_first_ != first) {
+      frame.tracer.closest_hit(directions->rays, directions->ray_count, occlusion_.hits);
+      frame.rays += directions->ray_count;
+      traced_ = true;
+      traced_first_ = first;
+      frame.timer.mark("trace");
+    }
+    const HitRadiance& radiance =
+        bounce == 1 ? hit_light_pass_.run(frame.scene, *directions, occlusion_, shadows, literal)
+                    : hit_light_pass_.run_from_screen(g_buffer, *directions, occlusion_, previous_bounce_.image);
+    frame.timer.mark(bounce == 1 ? "light of hits" : "light from screen");
+    gather_pass_.run(g_buffer, grid, *directions, occlusion_, radiance, samples, literal, bounce_);
+    frame.timer.mark("gather");
+  }
+}
+
+}  // namespace lightwell

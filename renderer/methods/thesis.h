@@ -1,0 +1,45 @@
+// The method of the thesis: occlusion maps as indirect light sources, further bounces in screen space.
+#pragma once
+
+#include "renderer/methods/frame_context.h"
+#include "renderer/passes/direct_light.h"
+#include "renderer/passes/directions.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/gather.h"
+#include "renderer/passes/hit_light.h"
+#include "renderer/passes/resolve.h"
+#include "renderer/passes/shadow_maps.h"
+
+namespace lightwell {
+
+class ThesisMethod {
+ public:
+  /// `buffers`: where rays and hits live; host-visible for a native tracer.
+  ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
+
+  /// One frame. The camera and environment blocks and the scene are bound.
+  const Picture& render(FrameContext& frame);
+
+ private:
+  void resize(const FrameContext& frame, const IndirectMapGrid& grid);
+  const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                                    const IndirectMapGrid& grid);
+  void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                     const IndirectMapGrid& grid, int bounce);
+
+  GBufferPass g_buffer_pass_;
+  ShadowMapsPass shadow_maps_pass_;
+  DirectLightPass direct_light_pass_;
+  DirectionsPass directions_pass_;
+  HitLightPass hit_light_pass_;
+  GatherPass gather_pass_;
+  IndirectFilterPass filter_pass_;
+  AddMapsPass add_maps_pass_;
+  ResolvePass resolve_pass_;
+  OcclusionMap occlusion_;
+  IndirectMap bounce_, previous_bounce_, all_bounces_;
+  std::uint32_t traced_first_ = 0;   // the batch whose hits are in occlusion_
+  bool traced_ = false;
+};
+
+}  // namespace lightwell

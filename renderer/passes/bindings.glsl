@@ -1,0 +1,33 @@
+// Binding points, read by C++ and GLSL alike: preprocessor lines only. Storage 0 to 7 belong to the tracers and to the
+// pass at hand; what every pass may read has a place of its own.
+#define BINDING_RAYS 0
+#define BINDING_HITS 1
+#define BINDING_PDFS 2
+#define BINDING_HIT_RADIANCE 3
+#define BINDING_OUTPUT 4
+
+#define BINDING_POSITIONS 8
+#define BINDING_VERTICES 9
+#define BINDING_INDICES 10
+#define BINDING_INSTANCES 11
+#define BINDING_MATERIALS 12
+#define BINDING_LIGHTS 13
+#define BINDING_EXPOSURE 14
+
+#define BINDING_CAMERA 0
+#define BINDING_ENVIRONMENT 1
+
+#define UNIT_TEXTURES_SRGB 0
+#define UNIT_TEXTURES_LINEAR 4
+#define UNIT_SHADOW_MOMENTS 8
+#define UNIT_G_SURFACE 9
+#define UNIT_G_MATERIAL 10
+#define UNIT_G_EMISSION 11
+#define UNIT_G_DEPTH 12
+#define UNIT_IMAGE_A 14
+#define UNIT_IMAGE_B 15
+#define UNIT_IMAGE_C 16
+#define UNIT_ENVIRONMENT 17
+
+#define TEXTURE_CLASSES 4
+#define MAX_SHADOW_LAYERS 32

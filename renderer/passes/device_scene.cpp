@@ -1,0 +1,231 @@
+#include "renderer/passes/device_scene.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "renderer/check.h"
+#include "renderer/passes/bindings.glsl"
+#include "renderer/passes/device_types.h"
+
+namespace lightwell {
+
+namespace {
+
+constexpr std::size_t kKeptScenes = 8;
+
+void check_storage_size(std::uint64_t bytes, const char* what) {
+  GLint64 limit_bytes = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit_bytes);
+  if (bytes > static_cast<std::uint64_t>(limit_bytes))
+    throw std::runtime_error("the scene's " + std::string(what) + " take " + std::to_string(bytes >> 20) +
+                             " MiB; the device allows " + std::to_string(limit_bytes >> 20));
+}
+
+}  // namespace
+
+DeviceGeometry::DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives)
+    : primitives_(std::move(primitives)) {
+  std::uint64_t vertices = 0, indices = 0;
+  for (const auto& primitive : primitives_) {
+    first_vertex_.push_back(static_cast<std::uint32_t>(vertices));
+    first_index_.push_back(static_cast<std::uint32_t>(indices));
+    vertices += primitive->positions.size();
+    indices += primitive->indices.size();
+  }
+  check_storage_size(vertices * sizeof(DeviceVertex), "vertices");
+  check_storage_size(indices * sizeof(std::uint32_t), "indices");
+  rigid_vertices_ = static_cast<std::uint32_t>(vertices);
+  indices_ = gl::Buffer("indices", indices * sizeof(std::uint32_t));
+  for (std::size_t i = 0; i < primitives_.size(); ++i)
+    indices_.upload(std::span<const std::uint32_t>(primitives_[i]->indices), first_index_[i] * sizeof(std::uint32_t));
+  positions_ = gl::Buffer("positions", vertices * sizeof(glm::vec3));
+  vertices_ = gl::Buffer("vertices", vertices * sizeof(DeviceVertex));
+  upload_rigid();
+}
+
+void DeviceGeometry::upload_rigid() {
+  for (std::size_t i = 0; i < primitives_.size(); ++i) {
+    positions_.upload(std::span<const glm::vec3>(primitives_[i]->positions), first_vertex_[i] * sizeof(glm::vec3));
+    const std::vector<DeviceVertex> packed = pack_vertices(*primitives_[i], nullptr);
+    vertices_.upload(std::span<const DeviceVertex>(packed), first_vertex_[i] * sizeof(DeviceVertex));
+  }
+}
+
+void DeviceGeometry::reserve_deformed(std::uint32_t deformed_vertices) {
+  const std::uint64_t vertices = std::uint64_t{rigid_vertices_} + deformed_vertices;
+  check_storage_size(vertices * sizeof(DeviceVertex), "deformed vertices");
+  const bool moved = positions_.reserve(vertices * sizeof(glm::vec3));
+  const bool moved_too = vertices_.reserve(vertices * sizeof(DeviceVertex));
+  if (moved || moved_too) upload_rigid();
+}
+
+void DeviceGeometry::upload_deformed(const Primitive& primitive, const DeformedVertices& deformed,
+                                     std::uint32_t first_vertex) {
+  positions_.upload(std::span<const glm::vec3>(deformed.positions), first_vertex * sizeof(glm::vec3));
+  const std::vector<DeviceVertex> packed = pack_vertices(primitive, &deformed);
+  vertices_.upload(std::span<const DeviceVertex>(packed), first_vertex * sizeof(DeviceVertex));
+}
+
+void DeviceGeometry::bind() const {
+  positions_.bind_storage(BINDING_POSITIONS);
+  vertices_.bind_storage(BINDING_VERTICES);
+  indices_.bind_storage(BINDING_INDICES);
+}
+
+DeviceScene::DeviceScene()
+    : instances_("instances", 0), materials_("materials", 0), draw_commands_("draws", 0), instance_numbers_("ids", 0) {
+  glCreateVertexArrays(1, &vertex_array_);
+}
+
+DeviceScene::~DeviceScene() { glDeleteVertexArrays(1, &vertex_array_); }
+
+void DeviceScene::prepare(const Scene& scene, const Pose& pose) {
+  use_geometry(pose);
+  use_textures(scene);
+  upload_materials(scene);
+  upload_instances(scene, pose);
+  set_vertex_array();
+}
+
+// The first of the list becomes the geometry of just the primitives in the pose.
+void DeviceScene::use_geometry(const Pose& pose) {
+  std::vector<std::shared_ptr<const Primitive>> primitives;
+  for (const Instance& instance : pose.instances) primitives.push_back(instance.primitive);
+  std::sort(primitives.begin(), primitives.end());
+  primitives.erase(std::unique(primitives.begin(), primitives.end()), primitives.end());
+  const auto found = std::find_if(geometries_.begin(), geometries_.end(),
+                                  [&](const auto& geometry) { return geometry->primitives() == primitives; });
+  if (found != geometries_.end())
+    geometries_.splice(geometries_.begin(), geometries_, found);
+  else
+    geometries_.push_front(std::make_unique<DeviceGeometry>(std::move(primitives)));
+  if (geometries_.size() > kKeptScenes) geometries_.pop_back();
+}
+
+void DeviceScene::use_textures(const Scene& scene) {
+  const auto found =
+      std::find_if(textures_.begin(), textures_.end(), [&](const auto& textures) { return textures->fits(scene); });
+  if (found != textures_.end())
+    textures_.splice(textures_.begin(), textures_, found);
+  else
+    textures_.push_front(std::make_unique<SceneTextures>(scene));
+  if (textures_.size() > kKeptScenes) textures_.pop_back();
+}
+
+void DeviceScene::upload_materials(const Scene& scene) {
+  const SceneTextures& textures = *textures_.front();
+  std::vector<DeviceMaterial> packed;
+  packed.reserve(scene.materials.size() + 1);
+  for (const Material& material : scene.materials) packed.push_back(pack_material(material, textures));
+  packed.push_back(pack_material(Material{}, textures));  // the default material of glTF, last
+  constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
+  if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
+  has_textures_ = std::any_of(packed.begin(), packed.end(), [](const DeviceMaterial& material) {
+    return (material.base_color_texture.slot | material.metallic_roughness_texture.slot |
+            material.normal_texture.slot | material.emissive_texture.slot) != 0;
+  });
+  materials_.reserve(packed.size() * sizeof(DeviceMaterial));
+  materials_.upload(std::span<const DeviceMaterial>(packed));
+}
+
+void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
+  DeviceGeometry& geometry = *geometries_.front();
+  std::uint32_t deformed_vertices = 0;
+  for (const Instance& instance : pose.instances)
+    if (instance.deformed) deformed_vertices += static_cast<std::uint32_t>(instance.deformed->positions.size());
+  if (deformed_vertices > 0) geometry.reserve_deformed(deformed_vertices);
+
+  struct DrawCommand {
+    std::uint32_t count, instance_count, first_index;
+    std::int32_t base_vertex;
+    std::uint32_t base_instance;
+  };
+  std::vector<DrawCommand> commands[3];
+  std::vector<DeviceInstance> packed;
+  packed.reserve(pose.instances.size());
+  std::uint32_t next_deformed = geometry.rigid_vertices();
+  triangles_ = 0;
+  for (const Instance& instance : pose.instances) {
+    const auto& known = geometry.primitives();
+    const auto primitive = static_cast<std::size_t>(
+        std::lower_bound(known.begin(), known.end(), instance.primitive) - known.begin());
+    const std::uint32_t material =
+        instance.material >= 0 ? static_cast<std::uint32_t>(instance.material)
+                               : static_cast<std::uint32_t>(scene.materials.size());
+    std::uint32_t first_vertex = geometry.first_vertex(primitive);
+    if (instance.deformed) {
+      first_vertex = next_deformed;
+      geometry.upload_deformed(*instance.primitive, *instance.deformed, first_vertex);
+      next_deformed += static_cast<std::uint32_t>(instance.deformed->positions.size());
+    }
+    packed.push_back(
+        pack_instance(instance.world_from_object, geometry.first_index(primitive), first_vertex, material));
+    const bool double_sided = instance.material >= 0 && scene.materials[material].double_sided;
+    const bool mirrored = (packed.back().flags & kDeviceInstanceMirrored) != 0;
+    const DrawGroup group = double_sided ? DrawGroup::kDoubleSided
+                            : mirrored   ? DrawGroup::kCulledMirrored
+                                         : DrawGroup::kCulled;
+    const auto count = static_cast<std::uint32_t>(instance.primitive->indices.size());
+    commands[static_cast<std::size_t>(group)].push_back({count, 1, geometry.first_index(primitive),
+                                                         static_cast<std::int32_t>(first_vertex),
+                                                         static_cast<std::uint32_t>(packed.size() - 1)});
+    triangles_ += count / 3;
+    has_textures_ = has_textures_ || !instance.primitive->colors.empty();
+  }
+  instances_.reserve(packed.size() * sizeof(DeviceInstance));
+  instances_.upload(std::span<const DeviceInstance>(packed));
+
+  std::vector<DrawCommand> all;
+  for (std::size_t group = 0; group < 3; ++group) {
+    draws_[group] = {all.size() * sizeof(DrawCommand), static_cast<int>(commands[group].size())};
+    all.insert(all.end(), commands[group].begin(), commands[group].end());
+  }
+  draw_commands_.reserve(all.size() * sizeof(DrawCommand));
+  draw_commands_.upload(std::span<const DrawCommand>(all));
+  if (instance_numbers_.reserve(packed.size() * sizeof(std::uint32_t)) || packed.size() <= 4) {
+    std::vector<std::uint32_t> numbers(instance_numbers_.size_bytes() / sizeof(std::uint32_t));
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    instance_numbers_.upload(std::span<const std::uint32_t>(numbers));
+  }
+}
+
+void DeviceScene::set_vertex_array() {
+  const DeviceGeometry& geometry = *geometries_.front();
+  const GLuint array = vertex_array_;
+  glVertexArrayVertexBuffer(array, 0, geometry.positions(), 0, sizeof(glm::vec3));
+  glVertexArrayVertexBuffer(array, 1, geometry.vertices(), 0, sizeof(DeviceVertex));
+  glVertexArrayVertexBuffer(array, 2, instance_numbers_.id(), 0, sizeof(std::uint32_t));
+  glVertexArrayBindingDivisor(array, 2, 1);
+  glVertexArrayElementBuffer(array, geometry.indices());
+  const auto enable = [array](GLuint attribute, GLuint binding) {
+    glEnableVertexArrayAttrib(array, attribute);
+    glVertexArrayAttribBinding(array, attribute, binding);
+  };
+  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribIFormat(array, 1, 2, GL_UNSIGNED_INT, offsetof(DeviceVertex, normal));
+  glVertexArrayAttribFormat(array, 2, 4, GL_FLOAT, GL_FALSE, offsetof(DeviceVertex, uv0));
+  glVertexArrayAttribFormat(array, 3, 4, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(DeviceVertex, color));
+  glVertexArrayAttribIFormat(array, 4, 1, GL_UNSIGNED_INT, 0);
+  enable(0, 0);
+  for (const GLuint attribute : {1u, 2u, 3u}) enable(attribute, 1);
+  enable(4, 2);
+}
+
+void DeviceScene::bind() const {
+  geometries_.front()->bind();
+  textures_.front()->bind();
+  instances_.bind_storage(BINDING_INSTANCES);
+  materials_.bind_storage(BINDING_MATERIALS);
+}
+
+void DeviceScene::draw_group(DrawGroup group) const {
+  const Draws& draws = draws_[static_cast<std::size_t>(group)];
+  glBindVertexArray(vertex_array_);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draw_commands_.id());
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, reinterpret_cast<const void*>(draws.offset_bytes),
+                              draws.count, 0);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,92 @@
+// The scene on the device in one frame: geometry, instances, materials, textures; draws for the raster passes.
+#pragma once
+
+#include <list>
+#include <memory>
+#include <vector>
+
+#include "renderer/gl/buffer.h"
+#include "renderer/passes/scene_textures.h"
+#include "renderer/scene/pose.h"
+
+namespace lightwell {
+
+/// Vertices and indices of a set of primitives, uploaded once and kept while the scene uses just these.
+class DeviceGeometry {
+ public:
+  DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives);
+  const std::vector<std::shared_ptr<const Primitive>>& primitives() const { return primitives_; }
+
+  /// Makes room for `deformed_vertices` after the rigid ones.
+  void reserve_deformed(std::uint32_t deformed_vertices);
+  /// Writes an instance's deformed vertices at `first_vertex`; what does not deform is copied from the primitive.
+  void upload_deformed(const Primitive& primitive, const DeformedVertices& deformed, std::uint32_t first_vertex);
+
+  std::uint32_t first_vertex(std::size_t primitive) const { return first_vertex_[primitive]; }
+  std::uint32_t first_index(std::size_t primitive) const { return first_index_[primitive]; }
+  std::uint32_t rigid_vertices() const { return rigid_vertices_; }
+  void bind() const;
+  GLuint positions() const { return positions_.id(); }
+  GLuint vertices() const { return vertices_.id(); }
+  GLuint indices() const { return indices_.id(); }
+
+ private:
+  void upload_rigid();
+  std::vector<std::shared_ptr<const Primitive>> primitives_;
+  std::vector<std::uint32_t> first_vertex_, first_index_;
+  std::uint32_t rigid_vertices_ = 0;
+  gl::Buffer positions_, vertices_, indices_;
+};
+
+/// Which triangles a draw takes, by the state it needs.
+enum class DrawGroup { kCulled, kCulledMirrored, kDoubleSided };
+
+/// What of the scene lives on the device. `prepare` brings it to a pose; the rest reads it.
+class DeviceScene {
+ public:
+  DeviceScene();
+  ~DeviceScene();
+
+  /// Uploads what changed since the last frame; scenes used lately are kept, so that sessions can alternate.
+  /// Throws std::runtime_error when the scene is over the device's limits.
+  void prepare(const Scene& scene, const Pose& pose);
+
+  /// Binds everything that shaders/scene_data.glsl and textures.glsl declare.
+  void bind() const;
+
+  /// True if a material has a texture or a mesh vertex colours: shaders need their HAS_TEXTURES variant.
+  bool has_textures() const { return has_textures_; }
+  std::uint64_t triangles() const { return triangles_; }
+
+  /// Draws all instances in three groups; `begin_group` sets the state of each before it is drawn.
+  template <class BeginGroup>
+  void draw(const BeginGroup& begin_group) const {
+    for (const DrawGroup group : {DrawGroup::kCulled, DrawGroup::kCulledMirrored, DrawGroup::kDoubleSided}) {
+      if (draws_[static_cast<std::size_t>(group)].count == 0) continue;
+      begin_group(group);
+      draw_group(group);
+    }
+  }
+
+ private:
+  struct Draws {
+    std::uint64_t offset_bytes = 0;
+    int count = 0;
+  };
+  void use_geometry(const Pose& pose);
+  void use_textures(const Scene& scene);
+  void upload_instances(const Scene& scene, const Pose& pose);
+  void upload_materials(const Scene& scene);
+  void set_vertex_array();
+  void draw_group(DrawGroup group) const;
+
+  std::list<std::unique_ptr<DeviceGeometry>> geometries_;  // most recently used first
+  std::list<std::unique_ptr<SceneTextures>> textures_;
+  gl::Buffer instances_, materials_, draw_commands_, instance_numbers_;
+  GLuint vertex_array_ = 0;
+  Draws draws_[3];
+  bool has_textures_ = false;
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace lightwell

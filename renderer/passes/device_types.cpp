@@ -1,0 +1,92 @@
+#include "renderer/passes/device_types.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/passes/scene_textures.h"
+
+namespace lightwell {
+
+namespace {
+
+// The octahedral map of shaders/packing.glsl.
+std::uint32_t pack_octahedral(glm::vec3 unit) {
+  const float sum = std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z);
+  glm::vec2 p = glm::vec2(unit) / std::max(sum, 1e-20f);
+  if (unit.z < 0.0f) {
+    const glm::vec2 folded(1.0f - std::abs(p.y), 1.0f - std::abs(p.x));
+    p = glm::vec2(std::copysign(folded.x, p.x), std::copysign(folded.y, p.y));
+  }
+  const auto snorm16 = [](float x) {
+    return static_cast<std::uint32_t>(static_cast<std::uint16_t>(
+        static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f))));
+  };
+  return snorm16(p.x) | snorm16(p.y) << 16;
+}
+
+std::uint32_t pack_tangent(glm::vec4 tangent) {
+  const std::uint32_t packed = pack_octahedral(glm::vec3(tangent));
+  return tangent.w < 0.0f ? packed | 0x10000u : packed & ~0x10000u;
+}
+
+DeviceTextureUse pack_use(const TextureUse& use, bool srgb, const SceneTextures& textures) {
+  DeviceTextureUse packed;
+  packed.slot = textures.slot(use, srgb);
+  // KHR_texture_transform: T * R * S on column vectors, with its rotation matrix [c s; -s c].
+  const float c = std::cos(use.rotation), s = std::sin(use.rotation);
+  packed.uv_transform = {c * use.scale.x, -s * use.scale.x, s * use.scale.y, c * use.scale.y};
+  packed.uv_offset = use.offset;
+  return packed;
+}
+
+}  // namespace
+
+std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed) {
+  const std::vector<glm::vec3>& normals =
+      deformed && !deformed->normals.empty() ? deformed->normals : primitive.normals;
+  const std::vector<glm::vec4>& tangents =
+      deformed && !deformed->tangents.empty() ? deformed->tangents : primitive.tangents;
+  std::vector<DeviceVertex> packed(primitive.positions.size());
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    DeviceVertex& vertex = packed[i];
+    vertex.normal = pack_octahedral(i < normals.size() ? normals[i] : glm::vec3(0, 1, 0));
+    vertex.tangent = pack_tangent(i < tangents.size() ? tangents[i] : glm::vec4(1, 0, 0, 1));
+    vertex.uv0 = i < primitive.uv0.size() ? primitive.uv0[i] : glm::vec2(0.0f);
+    vertex.uv1 = i < primitive.uv1.size() ? primitive.uv1[i] : glm::vec2(0.0f);
+    const glm::vec4 color = i < primitive.colors.size() ? primitive.colors[i] : glm::vec4(1.0f);
+    for (int c = 0; c < 4; ++c)
+      vertex.color[c] = static_cast<std::uint16_t>(std::lround(std::clamp(color[c], 0.0f, 1.0f) * 65535.0f));
+  }
+  return packed;
+}
+
+DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_index, std::uint32_t first_vertex,
+                             std::uint32_t material) {
+  const glm::mat4 rows = glm::transpose(world_from_object);
+  DeviceInstance packed{{rows[0], rows[1], rows[2]}, first_index, first_vertex, material, 0};
+  if (glm::determinant(glm::mat3(world_from_object)) < 0.0f) packed.flags |= kDeviceInstanceMirrored;
+  return packed;
+}
+
+DeviceMaterial pack_material(const Material& material, const SceneTextures& textures) {
+  DeviceMaterial packed{};
+  packed.base_color = material.base_color_factor;
+  packed.emission = material.emissive_factor * material.emissive_strength;
+  packed.normal_scale = material.normal_scale;
+  packed.metallic = material.metallic_factor;
+  packed.roughness = material.roughness_factor;
+  const float ratio = (material.ior - 1.0f) / (material.ior + 1.0f);
+  packed.f0_dielectric = ratio * ratio;
+  packed.specular_factor = material.specular_factor;
+  packed.flags = (material.alpha_mode == AlphaMode::kMask ? 1u : 0u) |
+                 (material.alpha_mode == AlphaMode::kBlend ? 2u : 0u) | (material.double_sided ? 4u : 0u) |
+                 (material.unlit ? 8u : 0u);
+  packed.alpha_cutoff = material.alpha_cutoff;
+  packed.base_color_texture = pack_use(material.base_color_texture, true, textures);
+  packed.metallic_roughness_texture = pack_use(material.metallic_roughness_texture, false, textures);
+  packed.normal_texture = pack_use(material.normal_texture, false, textures);
+  packed.emissive_texture = pack_use(material.emissive_texture, true, textures);
+  return packed;
+}
+
+}  // namespace lightwell

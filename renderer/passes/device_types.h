@@ -1,0 +1,65 @@
+// The structs of shaders/scene_data.glsl as C++ lays them out (std430), and how scene values are packed into them.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "renderer/scene/pose.h"
+
+namespace lightwell {
+
+class SceneTextures;
+
+struct DeviceVertex {
+  std::uint32_t normal;   // octahedral, 2 x snorm16
+  std::uint32_t tangent;  // the same; bit 16 set where the handedness is negative
+  glm::vec2 uv0;
+  glm::vec2 uv1;
+  std::uint16_t color[4];  // unorm16
+};
+static_assert(sizeof(DeviceVertex) == 32);
+
+struct DeviceInstance {
+  glm::vec4 world_from_object[3];  // rows
+  std::uint32_t first_index;
+  std::uint32_t first_vertex;
+  std::uint32_t material;
+  std::uint32_t flags;
+};
+static_assert(sizeof(DeviceInstance) == 64);
+constexpr std::uint32_t kDeviceInstanceMirrored = 1;
+
+struct DeviceTextureUse {
+  glm::vec4 uv_transform{1.0f, 0.0f, 0.0f, 1.0f};
+  glm::vec2 uv_offset{0.0f};
+  std::uint32_t slot = 0;
+  std::uint32_t padding = 0;
+};
+static_assert(sizeof(DeviceTextureUse) == 32);
+
+struct DeviceMaterial {
+  glm::vec4 base_color;
+  glm::vec3 emission;
+  float normal_scale;
+  float metallic;
+  float roughness;
+  float f0_dielectric;
+  float specular_factor;
+  std::uint32_t flags;
+  float alpha_cutoff;
+  std::uint32_t padding[2];
+  DeviceTextureUse base_color_texture;
+  DeviceTextureUse metallic_roughness_texture;
+  DeviceTextureUse normal_texture;
+  DeviceTextureUse emissive_texture;
+};
+static_assert(sizeof(DeviceMaterial) == 192);
+
+/// `deformed` replaces positions, normals and tangents where it is not null.
+std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed);
+DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_index, std::uint32_t first_vertex,
+                             std::uint32_t material);
+DeviceMaterial pack_material(const Material& material, const SceneTextures& textures);
+
+}  // namespace lightwell

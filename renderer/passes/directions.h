@@ -1,0 +1,36 @@
+// The sampling direction map (thesis 3.1).
+#pragma once
+
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/indirect_map_grid.h"
+
+namespace lightwell {
+
+/// A batch of directions for every pixel of the indirect map, as rays from its representative's surface.
+/// Ray j * pixels + pixel is direction first + j of that pixel.
+struct Directions {
+  gl::Buffer rays;  // Ray
+  gl::Buffer pdfs;  // float, per steradian; 0: no ray
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t ray_count = 0;
+};
+
+class DirectionsPass {
+ public:
+  /// `buffers`: host-visible where a native tracer reads the rays.
+  DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
+  void resize(std::uint32_t most_rays);
+  const Directions& run(const GBuffer& g_buffer, const IndirectMapGrid& grid, std::uint32_t first, std::uint32_t count,
+                        std::uint32_t seed);
+
+ private:
+  gl::ProgramPtr program_;
+  IndirectMapUniforms grid_;
+  gl::Uniform<std::uint32_t> first_, count_, seed_;
+  Directions directions_;
+};
+
+}  // namespace lightwell

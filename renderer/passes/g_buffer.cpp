@@ -1,0 +1,56 @@
+#include "renderer/passes/g_buffer.h"
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+void GBuffer::bind() const {
+  surface.bind(UNIT_G_SURFACE);
+  material.bind(UNIT_G_MATERIAL);
+  emission.bind(UNIT_G_EMISSION);
+  depth.bind(UNIT_G_DEPTH);
+}
+
+GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
+    : plain_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag")),
+      textured_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", {"HAS_TEXTURES 1"})) {}
+
+void GBufferPass::resize(glm::ivec2 size_px) {
+  if (buffer_.depth && buffer_.size_px() == size_px) return;
+  buffer_.surface = gl::Texture("g-buffer surface", GL_RGBA32UI, size_px);
+  buffer_.material = gl::Texture("g-buffer material", GL_R32UI, size_px);
+  buffer_.emission = gl::Texture("g-buffer emission", GL_RGBA16F, size_px);
+  buffer_.depth = gl::Texture("g-buffer depth", GL_DEPTH_COMPONENT32F, size_px);
+  framebuffer_ =
+      gl::Framebuffer("g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission}, &buffer_.depth);
+}
+
+const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed) {
+  framebuffer_.bind();
+  const GLuint zero_bits[4] = {0, 0, 0, 0};
+  const GLfloat zero[4] = {0, 0, 0, 0};
+  glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 0, zero_bits);
+  glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 1, zero_bits);
+  glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 2, zero);
+  glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, zero);
+
+  const Variant& variant = scene.has_textures() ? textured_ : plain_;
+  variant.program->use();
+  variant.frame_seed = seed;
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glCullFace(GL_BACK);
+  scene.draw([](DrawGroup group) {
+    if (group == DrawGroup::kDoubleSided)
+      glDisable(GL_CULL_FACE);
+    else
+      glEnable(GL_CULL_FACE);
+    // The picture's rows run downwards, which turns every winding around.
+    glFrontFace(group == DrawGroup::kCulledMirrored ? GL_CCW : GL_CW);
+  });
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  return buffer_;
+}
+
+}  // namespace lightwell

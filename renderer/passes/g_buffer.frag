@@ -1,0 +1,66 @@
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/scene_data.glsl"
+#ifdef HAS_TEXTURES
+#include "shaders/textures.glsl"
+#endif
+#include "shaders/surface.glsl"
+
+in vec3 world_position;
+in vec3 world_normal;
+#ifdef HAS_TEXTURES
+in vec4 world_tangent;
+in vec4 texture_uv;
+in vec4 vertex_color_factor;
+#endif
+flat in uint instance_index;
+
+layout(location = 0) out uvec4 out_surface;
+layout(location = 1) out uint out_material;
+layout(location = 2) out vec4 out_emission;
+
+uniform uint frame_seed;
+
+// Coverage as a threshold that changes from pixel to pixel and frame to frame: the mean of many frames is the blend.
+float coverage_threshold() { return unit_interval(hash(uvec3(gl_FragCoord.xy, frame_seed))); }
+
+void main() {
+  const Material material = materials[instances[instance_index].material];
+  Attributes at;
+  at.normal_ws = normalize(world_normal);
+  at.tangent_ws = vec3(0.0);
+  at.handedness = 1.0;
+  at.uv0 = vec2(0.0);
+  at.uv1 = vec2(0.0);
+  at.color = vec4(1.0);
+  float footprint = 0.0;
+#ifdef HAS_TEXTURES
+  at.tangent_ws = world_tangent.xyz;
+  at.handedness = world_tangent.w;
+  at.uv0 = texture_uv.xy;
+  at.uv1 = texture_uv.zw;
+  at.color = vertex_color_factor;
+  footprint = max(length(dFdx(texture_uv.xy)), length(dFdy(texture_uv.xy)));
+#endif
+  Surface surface = shade_surface(material, at, footprint);
+  if ((material.flags & kMaterialAlphaMask) != 0u && surface.base_color.a < material.alpha_cutoff) discard;
+  if ((material.flags & kMaterialAlphaBlend) != 0u && surface.base_color.a <= coverage_threshold()) discard;
+
+  const vec3 to_camera = direction_to_camera(world_position);
+  vec3 geometric_normal = cross(dFdx(world_position), dFdy(world_position));
+  geometric_normal = dot(geometric_normal, geometric_normal) > 0.0 ? normalize(geometric_normal) : at.normal_ws;
+  if (dot(geometric_normal, to_camera) < 0.0) geometric_normal = -geometric_normal;
+  // A double-sided surface seen from behind shows its normal turned around; so does one whose winding disagrees.
+  if (dot(at.normal_ws, geometric_normal) < 0.0) surface.normal_ws = -surface.normal_ws;
+  surface.normal_ws = visible_shading_normal(surface.normal_ws, to_camera);
+
+  const bool unlit = (material.flags & kMaterialUnlit) != 0u;
+  const vec3 base_color = unlit ? vec3(0.0) : clamp(surface.base_color.rgb, 0.0, 1.0);
+  out_surface = pack_g_surface(surface.normal_ws, geometric_normal, base_color, clamp(surface.metallic, 0.0, 1.0));
+  const uint roughness = uint(clamp(surface.roughness, 0.0, 1.0) * 65535.0 + 0.5);
+  out_material = instances[instance_index].material | (roughness << 16);
+  out_emission = vec4(unlit ? surface.base_color.rgb : surface.emission, unlit ? 1.0 : 0.0);
+}

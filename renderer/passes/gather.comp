@@ -1,0 +1,56 @@
+// Renders the indirect lighting map (thesis 4.2, Algorithm 2): the light of a pixel's hits, weighted by its BRDF.
+// Corrected: 1/N sum f cos L / pdf. Literal: the plain sum of what hit_light.comp weighted as printed.
+// The map holds light over directional albedo, so that textures do not pass through its low resolution.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/scene_data.glsl"
+#include "shaders/g_buffer.glsl"
+#include "shaders/ray.glsl"
+#include "shaders/indirect_map.glsl"
+
+layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = BINDING_PDFS) readonly buffer Pdfs { float pdfs[]; };
+layout(std430, binding = BINDING_HIT_RADIANCE) readonly buffer HitRadiance { uvec2 hit_radiance[]; };
+layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
+layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
+
+uniform uint direction_count;  // in this batch
+uniform uint total_directions; // in all batches
+uniform int first_batch;
+uniform int literal;
+
+void main() {
+  const ivec2 map_pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(map_pixel, indirect_size_px))) return;
+  const uint pixel_count = uint(indirect_size_px.x * indirect_size_px.y);
+  const uint pixel = uint(map_pixel.y * indirect_size_px.x + map_pixel.x);
+  const GBufferPoint point = g_buffer_point(representative_pixel(map_pixel));
+  const mat3 frame = frame_around(point.normal_ws);
+  const vec3 out_direction = point.to_camera_ws * frame;
+
+  vec3 sum = vec3(0.0);
+  vec2 distance_sum = vec2(0.0);
+  for (uint j = 0u; j < direction_count; ++j) {
+    const uint index = j * pixel_count + pixel;
+    const float pdf = pdfs[index];
+    const uvec2 packed_radiance = hit_radiance[index];
+    const vec3 radiance = vec3(unpackHalf2x16(packed_radiance.x), unpackHalf2x16(packed_radiance.y).x);
+    const vec3 reflectance =
+        brdf_times_cosine(point.brdf, out_direction, rays[index].direction_ws * frame) / max(pdf, 1e-20);
+    sum += pdf > 0.0 ? (literal == 1 ? radiance : radiance * reflectance) : vec3(0.0);
+    const float t = hits[index].t;
+    distance_sum += t >= 0.0 ? vec2(t, 1.0) : vec2(0.0);
+  }
+  const vec3 albedo = max(directional_albedo(point.brdf, max(out_direction.z, 0.0)), vec3(1e-4));
+  const vec3 demodulated = point.valid ? sum / albedo * (literal == 1 ? 1.0 : 1.0 / float(total_directions)) : vec3(0.0);
+  const vec4 before = first_batch == 1 ? vec4(0.0) : imageLoad(indirect_map, map_pixel);
+  imageStore(indirect_map, map_pixel, vec4(before.rgb + demodulated, point.valid ? 1.0 : 0.0));
+  if (first_batch == 1)
+    imageStore(occlusion_distance, map_pixel, vec4(distance_sum.y > 0.0 ? distance_sum.x / distance_sum.y : 0.0));
+}

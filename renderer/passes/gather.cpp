@@ -1,0 +1,81 @@
+#include "renderer/passes/gather.h"
+
+#include <utility>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+IndirectMap make_indirect_map(glm::ivec2 size_px) {
+  gl::TextureOptions options;
+  options.min_filter = options.mag_filter = GL_LINEAR;
+  return {gl::Texture("indirect map", GL_RGBA32F, size_px, options)};
+}
+
+GatherPass::GatherPass(gl::ShaderLibrary& shaders)
+    : program_(shaders.compute("passes/gather.comp")),
+      grid_(program_),
+      direction_count_(program_, "direction_count"),
+      total_directions_(program_, "total_directions"),
+      first_batch_(program_, "first_batch"),
+      literal_(program_, "literal") {}
+
+void GatherPass::resize(glm::ivec2 map_size_px) {
+  if (occlusion_distance_ && occlusion_distance_.size_px() == map_size_px) return;
+  gl::TextureOptions options;
+  options.min_filter = options.mag_filter = GL_LINEAR;
+  occlusion_distance_ = gl::Texture("occlusion distance", GL_R32F, map_size_px, options);
+}
+
+void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const Directions& directions,
+                     const OcclusionMap& occlusion, const HitRadiance& radiance, std::uint32_t total_directions,
+                     bool literal, IndirectMap& map) {
+  g_buffer.bind();
+  directions.rays.bind_storage(BINDING_RAYS);
+  directions.pdfs.bind_storage(BINDING_PDFS);
+  occlusion.hits.bind_storage(BINDING_HITS);
+  radiance.radiance.bind_storage(BINDING_HIT_RADIANCE);
+  map.image.bind_image(0, GL_READ_WRITE);
+  occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
+  grid_.set(grid);
+  direction_count_ = directions.count;
+  total_directions_ = total_directions;
+  first_batch_ = directions.first == 0 ? 1 : 0;
+  literal_ = literal ? 1 : 0;
+  program_->dispatch(grid.map_size_px);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+IndirectFilterPass::IndirectFilterPass(gl::ShaderLibrary& shaders)
+    : program_(shaders.compute("passes/indirect_filter.comp")), grid_(program_), stride_(program_, "stride") {}
+
+void IndirectFilterPass::resize(glm::ivec2 map_size_px) {
+  if (scratch_.image && scratch_.image.size_px() == map_size_px) return;
+  scratch_ = make_indirect_map(map_size_px);
+}
+
+void IndirectFilterPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, IndirectMap& map) {
+  g_buffer.bind();
+  grid_.set(grid);
+  for (const int stride : {1, 2, 4}) {
+    map.image.bind(UNIT_IMAGE_A);
+    scratch_.image.bind_image(0, GL_WRITE_ONLY);
+    stride_ = stride;
+    program_->dispatch(grid.map_size_px);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    std::swap(map, scratch_);
+  }
+}
+
+AddMapsPass::AddMapsPass(gl::ShaderLibrary& shaders)
+    : program_(shaders.compute("passes/add_maps.comp")), first_(program_, "first") {}
+
+void AddMapsPass::run(const IndirectMap& bounce, IndirectMap& sum, bool first) {
+  bounce.image.bind_image(0, GL_READ_ONLY);
+  sum.image.bind_image(1, GL_READ_WRITE);
+  first_ = first ? 1 : 0;
+  program_->dispatch(sum.image.size_px());
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+}  // namespace lightwell

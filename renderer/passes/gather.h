@@ -1,0 +1,67 @@
+// The indirect lighting map (thesis 4.2, Algorithm 2) and its optional filter.
+#pragma once
+
+#include "renderer/gl/program.h"
+#include "renderer/gl/texture.h"
+#include "renderer/passes/directions.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/hit_light.h"
+
+namespace lightwell {
+
+/// Indirect light of one bounce or of several, divided by the directional albedo of the pixels it was gathered at.
+/// RGBA32F, premultiplied by validity in a, sampled bilinearly.
+struct IndirectMap {
+  gl::Texture image;
+};
+
+/// Makes an empty map of this size.
+IndirectMap make_indirect_map(glm::ivec2 size_px);
+
+class GatherPass {
+ public:
+  explicit GatherPass(gl::ShaderLibrary& shaders);
+  void resize(glm::ivec2 map_size_px);
+
+  /// Adds a batch of `total_directions` to `map`; the first batch starts it anew.
+  void run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const Directions& directions,
+           const OcclusionMap& occlusion, const HitRadiance& radiance, std::uint32_t total_directions, bool literal,
+           IndirectMap& map);
+
+  /// Mean distance of a pixel's hits in the first batch, metres (R32F).
+  const gl::Texture& occlusion_distance() const { return occlusion_distance_; }
+
+ private:
+  gl::ProgramPtr program_;
+  IndirectMapUniforms grid_;
+  gl::Uniform<std::uint32_t> direction_count_, total_directions_;
+  gl::Uniform<int> first_batch_, literal_;
+  gl::Texture occlusion_distance_;
+};
+
+/// An edge-stopping a-trous filter over the map; not in the thesis.
+class IndirectFilterPass {
+ public:
+  explicit IndirectFilterPass(gl::ShaderLibrary& shaders);
+  void resize(glm::ivec2 map_size_px);
+  void run(const GBuffer& g_buffer, const IndirectMapGrid& grid, IndirectMap& map);
+
+ private:
+  gl::ProgramPtr program_;
+  IndirectMapUniforms grid_;
+  gl::Uniform<int> stride_;
+  IndirectMap scratch_;
+};
+
+/// Adds one bounce's map to the sum of all: sum += bounce.
+class AddMapsPass {
+ public:
+  explicit AddMapsPass(gl::ShaderLibrary& shaders);
+  void run(const IndirectMap& bounce, IndirectMap& sum, bool first);
+
+ private:
+  gl::ProgramPtr program_;
+  gl::Uniform<int> first_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,62 @@
+// Light leaving the hits towards their pixels: the occlusion map as indirect light sources (thesis 4.2). A hit in shadow
+// gives nothing but its own emission; a miss gives the environment.
+layout(local_size_x = 64) in;
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/scene_data.glsl"
+#include "shaders/ray.glsl"
+#ifdef HAS_TEXTURES
+#include "shaders/textures.glsl"
+#endif
+#include "shaders/surface.glsl"
+#include "shaders/hit_surface.glsl"
+#include "shaders/lights.glsl"
+#include "shaders/environment.glsl"
+
+layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
+layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = BINDING_HIT_RADIANCE) writeonly buffer HitRadiance { uvec2 hit_radiance[]; };
+
+uniform uint ray_count;
+uniform int literal;  // 1: Algorithm 2 as printed
+
+const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
+
+// Algorithm 2 as printed: the hit's BRDF between the direction to the hit and the one to the camera, over r^2.
+vec3 literal_weight(Ray ray, Hit hit, HitPoint point, Brdf brdf) {
+  const mat3 frame = frame_around(point.surface.normal_ws);
+  const vec3 in_direction = abs((camera.eye_ws.xyz - ray.origin_ws) * frame);
+  const vec3 out_direction = abs(-ray.direction_ws * frame);
+  const vec3 unit_in = normalize(in_direction);
+  return brdf_times_cosine(brdf, out_direction, unit_in) / (max(unit_in.z, 1e-4) * max(hit.t * hit.t, 1e-8));
+}
+
+vec3 light_of_hit(Ray ray, Hit hit) {
+  const HitPoint point = hit_point(ray, hit, hit.t * kFootprintPerMetre);
+  const Material material = materials[point.material];
+  if ((material.flags & kMaterialUnlit) != 0u) return vec3(0.0);
+  const Brdf brdf = make_brdf(clamp(point.surface.base_color.rgb, 0.0, 1.0), clamp(point.surface.metallic, 0.0, 1.0),
+                              point.surface.roughness, material.f0_dielectric, material.specular_factor);
+  vec3 radiance = point.surface.emission + reflected_punctual_light(brdf, point.position_ws, point.surface.normal_ws,
+                                                                    point.geometric_normal_ws, -ray.direction_ws);
+  if (literal == 1) radiance *= literal_weight(ray, hit, point, brdf);
+  return radiance;
+}
+
+void main() {
+  const uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  if (index >= ray_count) return;
+  const Ray ray = rays[index];
+  const Hit hit = hits[index];
+  vec3 radiance = vec3(0.0);
+  if (hit.t >= 0.0)
+    radiance = light_of_hit(ray, hit);
+  else if (ray.t_max > 0.0 && literal == 0)
+    radiance = environment_radiance(ray.direction_ws);
+  radiance = min(radiance, vec3(65504.0));  // the largest half
+  hit_radiance[index] = uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 0.0)));
+}

@@ -1,0 +1,51 @@
+// Light leaving the hits of the occlusion map: by direct light (thesis 4.2) or from the screen (4.3).
+#pragma once
+
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/device_scene.h"
+#include "renderer/passes/directions.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/shadow_maps.h"
+
+namespace lightwell {
+
+/// The nearest hit along each ray of a batch of directions: M(p, d_j) of the thesis, as records.
+struct OcclusionMap {
+  gl::Buffer hits;  // Hit
+};
+
+/// Radiance arriving along each ray of a batch.
+struct HitRadiance {
+  gl::Buffer radiance;  // 4 halves a ray
+};
+
+class HitLightPass {
+ public:
+  explicit HitLightPass(gl::ShaderLibrary& shaders);
+  void resize(std::uint32_t most_rays);
+
+  /// Emission and reflected direct light of the hits, the environment for misses. `literal`: weighted as Algorithm 2
+  /// prints it.
+  const HitRadiance& run(const DeviceScene& scene, const Directions& directions, const OcclusionMap& occlusion,
+                         const ShadowMaps& shadows, bool literal);
+
+  /// What the previous bounce's indirect map shows where a hit is seen by the camera, else nothing.
+  const HitRadiance& run_from_screen(const GBuffer& g_buffer, const Directions& directions,
+                                     const OcclusionMap& occlusion, const gl::Texture& previous_bounce);
+
+ private:
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p) : program(p), ray_count(p, "ray_count"), literal(p, "literal") {}
+    gl::ProgramPtr program;
+    gl::Uniform<std::uint32_t> ray_count;
+    gl::Uniform<int> literal;
+  };
+  void bind(const Directions& directions, const OcclusionMap& occlusion) const;
+  Variant plain_, textured_;
+  gl::ProgramPtr screen_program_;
+  gl::Uniform<std::uint32_t> screen_ray_count_;
+  HitRadiance radiance_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,40 @@
+// The indirect map's pixels within the picture; the uniforms of shaders/indirect_map.glsl.
+#pragma once
+
+#include <algorithm>
+#include <glm/glm.hpp>
+
+#include "renderer/gl/program.h"
+
+namespace lightwell {
+
+struct IndirectMapGrid {
+  glm::ivec2 map_size_px{1};
+  glm::ivec2 picture_size_px{1};
+  glm::vec2 jitter{0.5f};  // where in its block the representative pixel lies, [0, 1)
+
+  std::uint32_t pixels() const { return static_cast<std::uint32_t>(map_size_px.x * map_size_px.y); }
+
+  /// A map whose longer side has `size` pixels (never more than the picture) and the picture's shape.
+  static IndirectMapGrid over(glm::ivec2 picture_size_px, int size) {
+    const float scale =
+        std::min(1.0f, static_cast<float>(size) / static_cast<float>(std::max(picture_size_px.x, picture_size_px.y)));
+    const glm::ivec2 map = glm::max(glm::ivec2(glm::vec2(picture_size_px) * scale + 0.5f), glm::ivec2(1));
+    return {map, picture_size_px};
+  }
+};
+
+struct IndirectMapUniforms {
+  explicit IndirectMapUniforms(const gl::ProgramPtr& program)
+      : size_px(program, "indirect_size_px"), scale(program, "indirect_scale"), jitter(program, "indirect_jitter") {}
+  void set(const IndirectMapGrid& grid) {
+    size_px = grid.map_size_px;
+    scale = glm::vec2(grid.picture_size_px) / glm::vec2(grid.map_size_px);
+    jitter = grid.jitter;
+  }
+  gl::Uniform<glm::ivec2> size_px;
+  gl::Uniform<glm::vec2> scale;
+  gl::Uniform<glm::vec2> jitter;
+};
+
+}  // namespace lightwell

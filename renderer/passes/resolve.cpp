@@ -1,0 +1,129 @@
+#include "renderer/passes/resolve.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+namespace {
+
+// std140 mirror of EnvironmentBlock in shaders/environment.glsl.
+struct DeviceEnvironment {
+  glm::vec4 zenith_rotation;
+  glm::vec4 horizon_strength;
+  glm::vec4 ground_image;
+  glm::vec4 background;
+};
+
+struct DeviceExposure {
+  float exposure;
+  float exposure_ev;
+  std::uint32_t measured;
+};
+
+}  // namespace
+
+EnvironmentBlock::EnvironmentBlock() : block_("environment", sizeof(DeviceEnvironment)) {}
+
+void EnvironmentBlock::set(const Environment& environment, const std::optional<glm::vec3>& background) {
+  const bool has_image = environment.image && !environment.image->rgb.empty();
+  if (has_image && uploaded_ != environment.image) {
+    gl::TextureOptions options;
+    options.min_filter = options.mag_filter = GL_LINEAR;
+    image_ = gl::Texture("environment", GL_RGB32F, environment.image->size_px, options);
+    glTextureParameteri(image_.id(), GL_TEXTURE_WRAP_S, GL_REPEAT);
+    glTextureSubImage2D(image_.id(), 0, 0, 0, environment.image->size_px.x, environment.image->size_px.y, GL_RGB,
+                        GL_FLOAT, environment.image->rgb.data());
+    uploaded_ = environment.image;
+  }
+  const DeviceEnvironment packed{glm::vec4(environment.zenith_radiance, environment.rotation),
+                                 glm::vec4(environment.horizon_radiance, environment.strength),
+                                 glm::vec4(environment.ground_radiance, has_image ? 1.0f : 0.0f),
+                                 glm::vec4(background.value_or(glm::vec3(0.0f)), background ? 1.0f : 0.0f)};
+  block_.upload(std::span<const DeviceEnvironment>(&packed, 1));
+}
+
+void EnvironmentBlock::bind() const {
+  block_.bind_uniform(BINDING_ENVIRONMENT);
+  glBindTextureUnit(UNIT_ENVIRONMENT, image_.id());
+}
+
+ResolvePass::ResolvePass(gl::ShaderLibrary& shaders)
+    : program_(shaders.compute("passes/resolve.comp")), view_(program_, "view"), frame_number_(program_, "frame_number") {}
+
+void ResolvePass::resize(glm::ivec2 size_px) {
+  if (picture_.image && picture_.image.size_px() == size_px) return;
+  picture_ = {gl::Texture("picture", GL_RGBA32F, size_px), 0};
+}
+
+const Picture& ResolvePass::run(const GBuffer& g_buffer, const DirectRadiance& direct, const IndirectMap& indirect,
+                                const gl::Texture& occlusion_distance, ViewKind view, bool accumulate) {
+  if (!accumulate) picture_.accumulated = 0;
+  g_buffer.bind();
+  direct.image.bind(UNIT_IMAGE_A);
+  indirect.image.bind(UNIT_IMAGE_B);
+  occlusion_distance.bind(UNIT_IMAGE_C);
+  picture_.image.bind_image(0, GL_READ_WRITE);
+  view_ = static_cast<int>(view);
+  frame_number_ = static_cast<int>(picture_.accumulated);
+  program_->dispatch(picture_.image.size_px());
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  ++picture_.accumulated;
+  return picture_;
+}
+
+DisplayPass::DisplayPass(gl::ShaderLibrary& shaders)
+    : exposure_program_(shaders.compute("passes/exposure.comp")),
+      display_program_(shaders.compute("passes/display.comp")),
+      exposure_size_px_(exposure_program_, "size_px"),
+      smoothing_(exposure_program_, "smoothing"),
+      display_size_px_(display_program_, "size_px"),
+      mapping_(display_program_, "mapping"),
+      neutral_curve_(display_program_, "neutral_curve"),
+      fixed_exposure_(display_program_, "fixed_exposure"),
+      exposure_("exposure", sizeof(DeviceExposure), gl::BufferUse::kHostVisible),
+      display_("display", 0, gl::BufferUse::kHostVisible) {
+  exposure_.clear();
+}
+
+void DisplayPass::resize(glm::ivec2 size_px) {
+  size_px_ = size_px;
+  display_.reserve(static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y) * 4);
+}
+
+void DisplayPass::measure_exposure(const Picture& picture, float smoothing) {
+  picture.image.bind(UNIT_IMAGE_A);
+  exposure_.bind_storage(BINDING_EXPOSURE);
+  exposure_size_px_ = size_px_;
+  smoothing_ = smoothing;
+  exposure_program_->dispatch(1u, 1u);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void DisplayPass::run(const Picture& picture, const Settings& settings) {
+  picture.image.bind(UNIT_IMAGE_A);
+  exposure_.bind_storage(BINDING_EXPOSURE);
+  display_.bind_storage(BINDING_OUTPUT);
+  display_size_px_ = size_px_;
+  const bool colour = settings.view == ViewKind::kAlbedo || settings.view == ViewKind::kNormal;
+  const bool distance = settings.view == ViewKind::kDepth || settings.view == ViewKind::kOcclusionDistance;
+  mapping_ = colour ? 1 : distance ? 2 : 0;
+  neutral_curve_ = settings.tone_map == ToneMap::kNeutral ? 1 : 0;
+  fixed_exposure_ = settings.exposure_ev ? std::exp2(*settings.exposure_ev) : 0.0f;
+  display_program_->dispatch(size_px_);
+}
+
+std::span<const std::uint8_t> DisplayPass::display_rgbx() const {
+  return {reinterpret_cast<const std::uint8_t*>(display_.host()),
+          static_cast<std::size_t>(size_px_.x) * static_cast<std::size_t>(size_px_.y) * 4};
+}
+
+float DisplayPass::measured_exposure_ev() const {
+  DeviceExposure values;
+  std::memcpy(&values, exposure_.host(), sizeof values);
+  return values.exposure_ev;
+}
+
+}  // namespace lightwell

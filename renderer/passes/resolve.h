@@ -1,0 +1,74 @@
+// From the parts of a frame to a scene-referred picture, and from it to eight bits a channel.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/direct_light.h"
+#include "renderer/passes/gather.h"
+#include "renderer/renderer.h"
+
+namespace lightwell {
+
+/// Scene-referred linear BT.709; a: share of lit surface, negative where unlit.
+struct Picture {
+  gl::Texture image;            // RGBA32F
+  std::uint32_t accumulated = 0;  // frames averaged in it
+};
+
+/// The sky, as shaders/environment.glsl reads it.
+class EnvironmentBlock {
+ public:
+  EnvironmentBlock();
+  void set(const Environment& environment, const std::optional<glm::vec3>& background);
+  void bind() const;
+
+ private:
+  gl::Buffer block_;
+  gl::Texture image_;
+  std::shared_ptr<const ImageHdr> uploaded_;
+};
+
+/// Direct and indirect light, or one of the views, into the picture.
+class ResolvePass {
+ public:
+  explicit ResolvePass(gl::ShaderLibrary& shaders);
+  void resize(glm::ivec2 size_px);
+  /// `accumulate`: average with the frames already in the picture.
+  const Picture& run(const GBuffer& g_buffer, const DirectRadiance& direct, const IndirectMap& indirect,
+                     const gl::Texture& occlusion_distance, ViewKind view, bool accumulate);
+  const Picture& picture() const { return picture_; }
+
+ private:
+  gl::ProgramPtr program_;
+  gl::Uniform<int> view_, frame_number_;
+  Picture picture_;
+};
+
+/// Exposure, tone curve, sRGB.
+class DisplayPass {
+ public:
+  explicit DisplayPass(gl::ShaderLibrary& shaders);
+  void resize(glm::ivec2 size_px);
+  /// Measures the picture's median luminance; `smoothing` is the share of the way towards it in this frame.
+  void measure_exposure(const Picture& picture, float smoothing);
+  void run(const Picture& picture, const Settings& settings);
+
+  /// The last picture, valid after gl::wait_for_device(): 4 bytes a pixel.
+  std::span<const std::uint8_t> display_rgbx() const;
+  float measured_exposure_ev() const;
+
+ private:
+  gl::ProgramPtr exposure_program_, display_program_;
+  gl::Uniform<glm::ivec2> exposure_size_px_;
+  gl::Uniform<float> smoothing_;
+  gl::Uniform<glm::ivec2> display_size_px_;
+  gl::Uniform<int> mapping_, neutral_curve_;
+  gl::Uniform<float> fixed_exposure_;
+  gl::Buffer exposure_, display_;
+  glm::ivec2 size_px_{0};
+};
+
+}  // namespace lightwell

@@ -1,0 +1,37 @@
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/scene_data.glsl"
+#ifdef HAS_TEXTURES
+#include "shaders/textures.glsl"
+flat in uint instance_index;
+in vec4 texture_uv;
+#endif
+
+in vec3 world_position;
+
+uniform vec4 light_position_far;  // xyz; w: distance of depth 1, or 0 for a directional light
+
+layout(location = 0) out vec2 out_moments;
+
+void main() {
+#ifdef HAS_TEXTURES
+  const Material material = materials[instances[instance_index].material];
+  if ((material.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u) {
+    float alpha = material.base_color.a;
+    if (material.base_color_texture.slot != 0u)
+      alpha *= sample_texture(material.base_color_texture, texture_uv.xy, texture_uv.zw, 0.0).a;
+    const bool masked = (material.flags & kMaterialAlphaMask) != 0u;
+    const float threshold =
+        masked ? material.alpha_cutoff : unit_interval(hash(uvec3(gl_FragCoord.xy, 0x51u))) + 1e-6;
+    if (alpha < threshold) discard;
+  }
+#endif
+  const float depth = light_position_far.w > 0.0
+                          ? length(world_position - light_position_far.xyz) / light_position_far.w
+                          : gl_FragCoord.z;
+  // The second moment takes in the slope of the surface within the texel: Donnelly and Lauritzen 2006, section 4.1.
+  const vec2 slope = vec2(dFdx(depth), dFdy(depth));
+  out_moments = vec2(depth, depth * depth + 0.25 * dot(slope, slope));
+}

@@ -1,0 +1,26 @@
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/scene_data.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 2) in vec4 uv;
+layout(location = 4) in uint instance_number;
+
+uniform mat4 light_clip_from_world;
+
+out vec3 world_position;
+#ifdef HAS_TEXTURES
+out vec4 texture_uv;
+flat out uint instance_index;
+#endif
+
+void main() {
+  world_position = transform_point(instances[instance_number], position);
+#ifdef HAS_TEXTURES
+  texture_uv = uv;
+  instance_index = instance_number;
+#endif
+  gl_Position = light_clip_from_world * vec4(world_position, 1.0);
+}

@@ -1,0 +1,222 @@
+#include "renderer/passes/shadow_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+namespace {
+
+// std430 mirrors of shaders/lights.glsl.
+struct DeviceLight {
+  glm::vec3 position_ws;
+  float inverse_range;
+  glm::vec3 direction_ws;
+  std::uint32_t kind;
+  glm::vec3 intensity;
+  float spot_scale;
+  float spot_offset;
+  float shadow_far_m;
+  std::int32_t first_shadow_layer;
+  float padding;
+};
+static_assert(sizeof(DeviceLight) == 64);
+
+struct DeviceLightsHeader {
+  glm::mat4 shadow_clip_from_world[MAX_SHADOW_LAYERS];
+  std::uint32_t light_count;
+  float shadow_least_variance;
+  std::uint32_t padding[2];
+};
+
+int layers_of(LightKind kind) { return kind == LightKind::kPoint ? 6 : 1; }
+
+glm::vec3 any_perpendicular(glm::vec3 unit) {
+  const glm::vec3 axis = std::abs(unit.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+  return glm::normalize(glm::cross(unit, axis));
+}
+
+// World to light space: x, y across, z along the light's direction (so that depth grows away from the light).
+glm::mat4 light_from_world(glm::vec3 position, glm::vec3 direction) {
+  const glm::vec3 x = any_perpendicular(direction), y = glm::cross(direction, x);
+  const glm::mat3 rotation = glm::transpose(glm::mat3(x, y, direction));
+  glm::mat4 matrix(rotation);
+  matrix[3] = glm::vec4(-(rotation * position), 1.0f);
+  return matrix;
+}
+
+// A box around the scene, seen along the light. Depth 0 to 1 through the box.
+glm::mat4 directional_clip(const Pose& pose, glm::vec3 direction) {
+  const glm::mat4 turned = light_from_world(glm::vec3(0.0f), direction);
+  glm::vec3 low(1e30f), high(-1e30f);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 p((corner & 1) != 0 ? pose.bounds_max.x : pose.bounds_min.x,
+                      (corner & 2) != 0 ? pose.bounds_max.y : pose.bounds_min.y,
+                      (corner & 4) != 0 ? pose.bounds_max.z : pose.bounds_min.z);
+    const glm::vec3 q(turned * glm::vec4(p, 1.0f));
+    low = glm::min(low, q);
+    high = glm::max(high, q);
+  }
+  const glm::vec3 size = glm::max(high - low, glm::vec3(1e-3f));
+  low -= 0.01f * size;
+  high += 0.01f * size;
+  const glm::vec3 scale(2.0f / (high.x - low.x), 2.0f / (high.y - low.y), 1.0f / (high.z - low.z));
+  glm::mat4 clip(1.0f);
+  clip[0][0] = scale.x;
+  clip[1][1] = scale.y;
+  clip[2][2] = scale.z;
+  clip[3] = glm::vec4(-(low.x + high.x) / (high.x - low.x), -(low.y + high.y) / (high.y - low.y), -low.z * scale.z, 1);
+  return clip * turned;
+}
+
+// A pyramid of the given half angle's tangent; depth grows from 0 at `near`, and is not what is stored.
+glm::mat4 perspective_clip(glm::vec3 position, glm::vec3 direction, float tangent, float near, float far) {
+  glm::mat4 clip(0.0f);
+  clip[0][0] = clip[1][1] = 1.0f / tangent;
+  clip[2][2] = far / (far - near);
+  clip[3][2] = -far * near / (far - near);
+  clip[2][3] = 1.0f;
+  return clip * light_from_world(position, direction);
+}
+
+float farthest_corner_m(const Pose& pose, glm::vec3 from) {
+  const glm::vec3 reach = glm::max(glm::abs(pose.bounds_min - from), glm::abs(pose.bounds_max - from));
+  return std::max(glm::length(reach) * 1.01f, 1e-3f);
+}
+
+DeviceLight pack_light(const PlacedLight& placed) {
+  const Light& light = placed.light;
+  DeviceLight packed{};
+  packed.position_ws = placed.position_ws;
+  packed.inverse_range = light.range_m > 0.0f ? 1.0f / light.range_m : 0.0f;
+  packed.direction_ws = placed.direction_ws;
+  packed.kind = light.kind == LightKind::kDirectional ? 0u : light.kind == LightKind::kPoint ? 1u : 2u;
+  packed.intensity = light.color * light.intensity;
+  // KHR_lights_punctual, "Inner and outer cone angles".
+  const float cos_inner = std::cos(light.inner_cone_angle), cos_outer = std::cos(light.outer_cone_angle);
+  packed.spot_scale = 1.0f / std::max(0.001f, cos_inner - cos_outer);
+  packed.spot_offset = -cos_outer * packed.spot_scale;
+  packed.first_shadow_layer = -1;
+  return packed;
+}
+
+}  // namespace
+
+void ShadowMaps::bind() const {
+  moments.bind(UNIT_SHADOW_MOMENTS);
+  lights.bind_storage(BINDING_LIGHTS);
+}
+
+ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
+    : plain_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag")),
+      textured_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
+      filter_program_(shaders.compute("passes/shadow_filter.comp")),
+      filter_direction_(filter_program_, "direction"),
+      filter_radius_(filter_program_, "radius") {
+  maps_.lights = gl::Buffer("lights", sizeof(DeviceLightsHeader));
+}
+
+int ShadowMapsPass::layers_for(const Pose& pose) {
+  int layers = 0;
+  for (const PlacedLight& light : pose.lights)
+    if (layers + layers_of(light.light.kind) <= MAX_SHADOW_LAYERS) layers += layers_of(light.light.kind);
+  return layers;
+}
+
+void ShadowMapsPass::resize(int size_px, int filter_px, int layers) {
+  filter_px_ = filter_px;
+  layers = std::max(layers, 1);
+  if (maps_.moments && maps_.moments.size_px().x == size_px && maps_.moments.layers() == layers) return;
+  gl::TextureOptions options{.target = GL_TEXTURE_2D_ARRAY, .layers = layers};
+  across_ = gl::Texture("shadow moments, half filtered", GL_RG32F, glm::ivec2(size_px), options);
+  options.min_filter = options.mag_filter = GL_LINEAR;
+  maps_.moments = gl::Texture("shadow moments", GL_RG32F, glm::ivec2(size_px), options);
+  depth_ = gl::Texture("shadow depth", GL_DEPTH_COMPONENT32F, glm::ivec2(size_px));
+  framebuffers_.clear();
+  for (int layer = 0; layer < layers; ++layer)
+    framebuffers_.emplace_back("shadow map", std::initializer_list<const gl::Texture*>{&maps_.moments}, &depth_, layer);
+}
+
+// Fills the light buffer and gives the view of each layer.
+std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose) {
+  std::vector<View> views;
+  std::vector<DeviceLight> lights;
+  for (const PlacedLight& placed : pose.lights) {
+    DeviceLight light = pack_light(placed);
+    const int layers = layers_of(placed.light.kind);
+    if (static_cast<int>(views.size()) + layers <= MAX_SHADOW_LAYERS) {
+      light.first_shadow_layer = static_cast<std::int32_t>(views.size());
+      const glm::vec3 at = placed.position_ws;
+      light.shadow_far_m = farthest_corner_m(pose, at);
+      const glm::vec4 position_far(at, light.shadow_far_m);
+      const float near = light.shadow_far_m * 1e-4f;
+      if (placed.light.kind == LightKind::kDirectional) {
+        views.push_back({directional_clip(pose, placed.direction_ws), glm::vec4(0.0f)});
+      } else if (placed.light.kind == LightKind::kSpot) {
+        const float tangent = std::tan(std::min(placed.light.outer_cone_angle, 1.5f)) * 1.02f;
+        views.push_back({perspective_clip(at, placed.direction_ws, tangent, near, light.shadow_far_m), position_far});
+      } else {
+        // A margin over 90 degrees lets the filter look past the edges of a face.
+        const float tangent = 1.0f + 2.0f * static_cast<float>(filter_px_) / static_cast<float>(depth_.size_px().x);
+        for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
+                                     glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)})
+          views.push_back({perspective_clip(at, axis, tangent, near, light.shadow_far_m), position_far});
+      }
+    }
+    lights.push_back(light);
+  }
+  DeviceLightsHeader header{};
+  for (std::size_t i = 0; i < views.size(); ++i) header.shadow_clip_from_world[i] = views[i].clip_from_world;
+  header.light_count = static_cast<std::uint32_t>(lights.size());
+  header.shadow_least_variance = 1e-7f;
+  maps_.lights.reserve(sizeof header + lights.size() * sizeof(DeviceLight));
+  maps_.lights.upload(std::span<const DeviceLightsHeader>(&header, 1));
+  maps_.lights.upload(std::span<const DeviceLight>(lights), sizeof header);
+  return views;
+}
+
+void ShadowMapsPass::draw(const DeviceScene& scene, const View& view, int layer) {
+  const gl::Framebuffer& framebuffer = framebuffers_[static_cast<std::size_t>(layer)];
+  framebuffer.bind();
+  const GLfloat far[4] = {1, 1, 0, 0};
+  glClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, 0, far);
+  glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, far);
+  const Variant& variant = scene.has_textures() ? textured_ : plain_;
+  variant.program->use();
+  variant.clip_from_world = view.clip_from_world;
+  variant.position_far = view.position_far;
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  scene.draw([](DrawGroup) {});
+  glDisable(GL_DEPTH_TEST);
+}
+
+void ShadowMapsPass::filter(int layers) {
+  if (filter_px_ <= 1 || layers == 0) return;
+  const auto pass = [&](const gl::Texture& from, const gl::Texture& to, glm::ivec2 direction) {
+    from.bind(0);
+    to.bind_image(0, GL_WRITE_ONLY);
+    filter_direction_ = direction;
+    filter_radius_ = filter_px_ / 2;
+    const glm::ivec2 size = to.size_px();
+    filter_program_->use();
+    glDispatchCompute(static_cast<GLuint>((size.x + 63) / 64), static_cast<GLuint>(size.y),
+                      static_cast<GLuint>(layers));
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  };
+  pass(maps_.moments, across_, {1, 0});
+  pass(across_, maps_.moments, {0, 1});
+}
+
+const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose) {
+  const std::vector<View> views = place_lights(pose);
+  for (std::size_t layer = 0; layer < views.size(); ++layer) draw(scene, views[layer], static_cast<int>(layer));
+  filter(static_cast<int>(views.size()));
+  return maps_;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,168 @@
+#include "renderer/renderer.h"
+
+#include <chrono>
+#include <cstring>
+
+#include "renderer/check.h"
+#include "renderer/methods/thesis.h"
+#include "renderer/passes/bindings.glsl"
+#include "renderer/passes/camera_block.h"
+#include "renderer/tracing/tracer.h"
+
+namespace lightwell {
+
+namespace {
+
+// A share of the way to the new exposure per frame: about half a second at 20 frames a second.
+constexpr float kExposureSmoothing = 0.12f;
+
+class View : public RenderView {
+ public:
+  View(gl::ShaderLibrary& shaders, gl::BufferUse buffers) : thesis(shaders, buffers), display(shaders) {}
+  ThesisMethod thesis;
+  DisplayPass display;
+  std::uint32_t accumulated = 0;
+  bool exposed = false;
+};
+
+std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
+  std::vector<Coverage> all;
+  all.reserve(pose.instances.size());
+  for (const Instance& instance : pose.instances) {
+    Coverage coverage;
+    if (instance.material >= 0) {
+      const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
+      coverage.mode = material.alpha_mode;
+      coverage.cutoff = material.alpha_cutoff;
+      coverage.factor = material.base_color_factor.a;
+      coverage.use = material.base_color_texture;
+      if (coverage.mode != AlphaMode::kOpaque && coverage.use.texture >= 0) {
+        const Texture& texture = scene.textures[static_cast<std::size_t>(coverage.use.texture)];
+        if (texture.image >= 0) coverage.image = scene.images[static_cast<std::size_t>(texture.image)];
+        coverage.wrap_s = texture.sampler.wrap_s;
+        coverage.wrap_t = texture.sampler.wrap_t;
+      }
+    }
+    all.push_back(std::move(coverage));
+  }
+  return all;
+}
+
+// A low-discrepancy point about the pixel's middle, for anti-aliasing over accumulated frames: Roberts 2018 (R2).
+glm::vec2 pixel_jitter(std::uint32_t frame_number) {
+  if (frame_number == 0) return glm::vec2(0.0f);
+  const double n = frame_number;
+  return glm::vec2(glm::fract(0.5 + n * 0.7548776662466927), glm::fract(0.5 + n * 0.5698402909980532)) - 0.5f;
+}
+
+std::unique_ptr<Tracer> make_tracer(const RendererOptions& options, bool software) {
+  const bool native = options.tracer.empty() ? software && options.make_native_tracer : options.tracer == "embree";
+  if (!options.tracer.empty() && options.tracer != "embree" && options.tracer != "compute")
+    throw std::runtime_error("--tracer takes embree or compute, not \"" + options.tracer + "\"");
+  if (native && !options.make_native_tracer) throw std::runtime_error("this build has no Embree tracer");
+  return native ? options.make_native_tracer() : make_compute_tracer();
+}
+
+}  // namespace
+
+struct Renderer::State {
+  explicit State(const RendererOptions& options)
+      : context(gl::Context::create(options.device)),
+        timer(context->device().software),
+        tracer(make_tracer(options, context->device().software)),
+        buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
+        camera("camera", sizeof(CameraBlock)) {
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  }
+
+  void bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px);
+  void read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const;
+
+  std::unique_ptr<gl::Context> context;
+  gl::ShaderLibrary shaders;
+  gl::StageTimer timer;
+  std::unique_ptr<Tracer> tracer;
+  gl::BufferUse buffers;
+  DeviceScene device_scene;
+  gl::Buffer camera;
+  EnvironmentBlock environment;
+};
+
+void Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px) {
+  const CameraBlock block = make_camera_block(request.camera, request.size_px, jitter_px);
+  camera.upload(std::span<const CameraBlock>(&block, 1));
+  camera.bind_uniform(BINDING_CAMERA);
+  environment.set(scene.environment, request.settings.background);
+  environment.bind();
+  device_scene.bind();
+}
+
+void Renderer::State::read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const {
+  gl::wait_for_device();
+  if (request.want_display) {
+    const auto pixels = view.display.display_rgbx();
+    frame.display_rgbx.assign(pixels.begin(), pixels.end());
+  }
+  if (request.want_linear) {
+    frame.linear_rgb.resize(static_cast<std::size_t>(request.size_px.x) * static_cast<std::size_t>(request.size_px.y) *
+                            3);
+    glGetTextureImage(picture.image.id(), 0, GL_RGB, GL_FLOAT,
+                      static_cast<GLsizei>(frame.linear_rgb.size() * sizeof(float)), frame.linear_rgb.data());
+  }
+}
+
+Renderer::Renderer(const RendererOptions& options) : state_(std::make_unique<State>(options)) {
+  make_view();  // compiles every program, so that no frame does
+}
+
+Renderer::~Renderer() = default;
+
+gl::Context& Renderer::context() { return *state_->context; }
+
+std::string_view Renderer::tracer_name() const { return state_->tracer->name(); }
+
+std::unique_ptr<RenderView> Renderer::make_view() { return std::make_unique<View>(state_->shaders, state_->buffers); }
+
+Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, RenderView& render_view) {
+  if (Status good = check_settings(request.settings, request.size_px); !good) return good.error();
+  auto& view = static_cast<View&>(render_view);
+  const auto start = std::chrono::steady_clock::now();
+  Frame frame;
+  frame.size_px = request.size_px;
+  try {
+    state_->timer.begin_frame();
+    const Pose pose = pose_at(scene, request.time_s);
+    state_->device_scene.prepare(scene, pose);
+    const std::vector<Coverage> coverage = coverage_of(scene, pose);
+    state_->tracer->update({pose.instances, coverage});
+    view.accumulated = request.accumulate ? view.accumulated : 0;
+    state_->bind_frame(scene, request, pixel_jitter(view.accumulated));
+    state_->timer.mark("scene");
+
+    FrameContext context{state_->device_scene, pose,      request.settings, request.size_px, view.accumulated,
+                         request.accumulate,   *state_->tracer, state_->timer};
+    const Picture& picture = view.thesis.render(context);
+    view.display.resize(request.size_px);
+    view.display.measure_exposure(picture, view.exposed && view.accumulated == 0 ? kExposureSmoothing : 1.0f);
+    view.exposed = true;
+    if (request.want_display) view.display.run(picture, request.settings);
+    state_->timer.mark("display");
+    state_->read(view, picture, request, frame);
+    state_->timer.mark("read back");
+
+    view.accumulated = picture.accumulated;
+    frame.accumulated = picture.accumulated;
+    frame.exposure_ev = request.settings.exposure_ev.value_or(view.display.measured_exposure_ev());
+    frame.rays = context.rays;
+    frame.triangles = state_->device_scene.triangles();
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::kTooLarge, "scene", error.what()};
+  }
+  for (const auto& stage : state_->timer.end_frame()) frame.stages.push_back({stage.name, stage.ms});
+  frame.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+}  // namespace lightwell

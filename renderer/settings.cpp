@@ -1,0 +1,81 @@
+// Names and ranges of the settings, in one place for the command line and the API.
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "renderer/renderer.h"
+
+namespace lightwell {
+
+namespace {
+
+template <class Value, std::size_t N>
+using Names = std::array<std::pair<Value, std::string_view>, N>;
+
+constexpr Names<Method, 3> kMethods = {
+    {{Method::kThesis, "thesis"}, {Method::kRealtime, "realtime"}, {Method::kReference, "reference"}}};
+constexpr Names<Estimator, 2> kEstimators = {{{Estimator::kCorrected, "corrected"}, {Estimator::kLiteral, "literal"}}};
+constexpr Names<ViewKind, 7> kViews = {{{ViewKind::kFinal, "final"},
+                                        {ViewKind::kDirect, "direct"},
+                                        {ViewKind::kIndirect, "indirect"},
+                                        {ViewKind::kAlbedo, "albedo"},
+                                        {ViewKind::kNormal, "normal"},
+                                        {ViewKind::kDepth, "depth"},
+                                        {ViewKind::kOcclusionDistance, "occlusion-distance"}}};
+constexpr Names<ToneMap, 2> kToneMaps = {{{ToneMap::kNeutral, "neutral"}, {ToneMap::kLinear, "linear"}}};
+
+template <class Value, std::size_t N>
+std::optional<Value> from_name(const Names<Value, N>& names, std::string_view name) {
+  for (const auto& [value, known] : names)
+    if (known == name) return value;
+  return std::nullopt;
+}
+
+template <class Value, std::size_t N>
+std::string_view to_name(const Names<Value, N>& names, Value value) {
+  for (const auto& [known, name] : names)
+    if (known == value) return name;
+  return "unknown";
+}
+
+Status check_range(const char* name, int value, int least, int most) {
+  if (value >= least && value <= most) return Done{};
+  return invalid_input(name, std::to_string(value) + " is not within " + std::to_string(least) + " to " +
+                                 std::to_string(most));
+}
+
+}  // namespace
+
+std::optional<Method> method_from_name(std::string_view name) { return from_name(kMethods, name); }
+std::optional<Estimator> estimator_from_name(std::string_view name) { return from_name(kEstimators, name); }
+std::optional<ViewKind> view_kind_from_name(std::string_view name) { return from_name(kViews, name); }
+std::optional<ToneMap> tone_map_from_name(std::string_view name) { return from_name(kToneMaps, name); }
+std::string_view name_of(Method method) { return to_name(kMethods, method); }
+std::string_view name_of(Estimator estimator) { return to_name(kEstimators, estimator); }
+std::string_view name_of(ViewKind view) { return to_name(kViews, view); }
+std::string_view name_of(ToneMap tone_map) { return to_name(kToneMaps, tone_map); }
+
+Status check_settings(const Settings& settings, glm::ivec2 size_px) {
+  const Status checks[] = {check_range("width", size_px.x, 1, 16384),
+                           check_range("height", size_px.y, 1, 16384),
+                           check_range("samples", settings.samples, 1, 4096),
+                           check_range("bounces", settings.bounces, 0, 64),
+                           check_range("indirect-size", settings.indirect_size, 8, 4096),
+                           check_range("shadow-size", settings.shadow_size, 64, 4096),
+                           check_range("shadow-filter", settings.shadow_filter, 1, 15)};
+  for (const Status& check : checks)
+    if (!check) return check;
+  if (settings.shadow_filter % 2 == 0)
+    return invalid_input("shadow-filter", std::to_string(settings.shadow_filter) + " is not odd");
+  if (settings.exposure_ev && !(std::abs(*settings.exposure_ev) <= 64.0f))
+    return invalid_input("exposure", "it must be a number from -64 to 64");
+  if (settings.background)
+    for (int i = 0; i < 3; ++i)
+      if (!((*settings.background)[i] >= 0.0f && (*settings.background)[i] <= 1e6f))
+        return invalid_input("background", "its components must be from 0 to 1e6");
+  if (settings.method != Method::kThesis)
+    return Error{ErrorKind::kUnsupported, "method", "this version has the method thesis alone"};
+  return Done{};
+}
+
+}  // namespace lightwell

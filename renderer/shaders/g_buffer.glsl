@@ -1,0 +1,49 @@
+// Reading the G-buffer; the C++ side is renderer/passes/g_buffer.h. Needs bindings, packing, brdf, camera, scene_data.
+
+layout(binding = UNIT_G_SURFACE) uniform usampler2D g_surface;    // normal, geometric normal, base colour, metallic
+layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;  // material | roughness unorm16 << 16
+layout(binding = UNIT_G_EMISSION) uniform sampler2D g_emission;   // nit
+layout(binding = UNIT_G_DEPTH) uniform sampler2D g_depth;         // reversed; 0: nothing there
+
+uvec4 pack_g_surface(vec3 normal_ws, vec3 geometric_normal_ws, vec3 base_color, float metallic) {
+  return uvec4(packSnorm2x16(octahedral_from_unit(normal_ws)), packSnorm2x16(octahedral_from_unit(geometric_normal_ws)),
+               packUnorm2x16(base_color.rg), packUnorm2x16(vec2(base_color.b, metallic)));
+}
+
+struct GBufferPoint {
+  bool valid;                // false: background
+  float view_depth_m;
+  vec3 position_ws;
+  vec3 normal_ws;            // shading normal, on the viewer's side
+  vec3 geometric_normal_ws;  // on the viewer's side
+  vec3 to_camera_ws;         // unit
+  uint material;
+  Brdf brdf;
+};
+
+GBufferPoint g_buffer_point(ivec2 pixel) {
+  GBufferPoint point;
+  const float depth = texelFetch(g_depth, pixel, 0).r;
+  point.valid = depth > 0.0;
+  const uvec4 surface = texelFetch(g_surface, pixel, 0);
+  const uint packed_material = texelFetch(g_material, pixel, 0).r;
+  const float safe_depth = point.valid ? depth : 1.0;
+  point.view_depth_m = view_depth(safe_depth);
+  point.position_ws = position_from_depth(vec2(pixel) + 0.5, safe_depth);
+  point.to_camera_ws = direction_to_camera(point.position_ws);
+  point.normal_ws = unit_from_octahedral(unpackSnorm2x16(surface.x));
+  point.geometric_normal_ws = unit_from_octahedral(unpackSnorm2x16(surface.y));
+  const vec2 blue_metallic = unpackUnorm2x16(surface.w);
+  const vec3 base_color = vec3(unpackUnorm2x16(surface.z), blue_metallic.x);
+  point.material = packed_material & 0xffffu;
+  const float roughness = float(packed_material >> 16) / 65535.0;
+  point.brdf = make_brdf(base_color, blue_metallic.y, roughness, materials[point.material].f0_dielectric,
+                         materials[point.material].specular_factor);
+  return point;
+}
+
+// How far to lift a ray off the surface: well over the rounding of depth and position, well under what can be seen.
+float ray_offset_m(GBufferPoint point) {
+  const vec3 extent = abs(point.position_ws);
+  return 2e-4 * point.view_depth_m + 1e-6 * max(extent.x, max(extent.y, extent.z));
+}

@@ -1,0 +1,92 @@
+// Punctual lights and their variance shadow maps. Needs bindings, brdf, sampling.
+
+struct Light {
+  vec3 position_ws;
+  float inverse_range;   // 0: infinite
+  vec3 direction_ws;     // the way it shines
+  uint kind;             // 0 directional, 1 point, 2 spot
+  vec3 intensity;        // colour * lux (directional) or candela
+  float spot_scale;      // KHR_lights_punctual's angular attenuation
+  float spot_offset;
+  float shadow_far_m;    // distance at which the normalised shadow depth is 1
+  int first_shadow_layer; // -1: casts none
+  float padding;
+};
+
+layout(std430, binding = BINDING_LIGHTS) readonly buffer Lights {
+  mat4 shadow_clip_from_world[MAX_SHADOW_LAYERS];
+  uint light_count;
+  float shadow_least_variance;
+  uvec2 lights_padding;
+  Light lights[];
+};
+
+layout(binding = UNIT_SHADOW_MOMENTS) uniform sampler2DArray shadow_moments;  // mean and mean square of depth
+
+// Chebyshev's inequality on the moments of depth: Donnelly and Lauritzen 2006, "Variance shadow maps".
+float chebyshev_upper_bound(vec2 moments, float depth) {
+  const float variance = max(moments.y - moments.x * moments.x, shadow_least_variance);
+  const float distance = depth - moments.x;
+  return distance <= 0.0 ? 1.0 : variance / (variance + distance * distance);
+}
+
+// The face of a cube a direction points at: +X -X +Y -Y +Z -Z.
+int cube_face(vec3 direction) {
+  const vec3 size = abs(direction);
+  if (size.x >= size.y && size.x >= size.z) return direction.x >= 0.0 ? 0 : 1;
+  if (size.y >= size.z) return direction.y >= 0.0 ? 2 : 3;
+  return direction.z >= 0.0 ? 4 : 5;
+}
+
+// Share of the light that reaches a point, from the shadow map; 1 outside it.
+float light_visibility(Light light, vec3 position_ws) {
+  if (light.first_shadow_layer < 0) return 1.0;
+  const vec3 from_light = position_ws - light.position_ws;
+  const int layer = light.first_shadow_layer + (light.kind == 1u ? cube_face(from_light) : 0);
+  const vec4 clip = shadow_clip_from_world[layer] * vec4(position_ws, 1.0);
+  const vec3 ndc = clip.xyz / clip.w;
+  const float depth = light.kind == 0u ? ndc.z : length(from_light) / light.shadow_far_m;
+  if (any(greaterThan(abs(ndc.xy), vec2(1.0))) || clip.w <= 0.0) return 1.0;
+  const vec2 moments = textureLod(shadow_moments, vec3(ndc.xy * 0.5 + 0.5, float(layer)), 0.0).rg;
+  return chebyshev_upper_bound(moments, depth);
+}
+
+struct LightSample {
+  vec3 to_light_ws;   // unit
+  vec3 irradiance;    // on a surface facing the light, unshadowed
+};
+
+LightSample light_at(Light light, vec3 position_ws) {
+  LightSample at;
+  if (light.kind == 0u) {
+    at.to_light_ws = -light.direction_ws;
+    at.irradiance = light.intensity;
+    return at;
+  }
+  const vec3 to_light = light.position_ws - position_ws;
+  const float distance2 = max(dot(to_light, to_light), 1e-8);
+  at.to_light_ws = to_light * inversesqrt(distance2);
+  const float ratio2 = distance2 * light.inverse_range * light.inverse_range;
+  const float window = clamp(1.0 - ratio2 * ratio2, 0.0, 1.0);
+  float cone = 1.0;
+  if (light.kind == 2u) {
+    cone = clamp(dot(-at.to_light_ws, light.direction_ws) * light.spot_scale + light.spot_offset, 0.0, 1.0);
+    cone *= cone;
+  }
+  at.irradiance = light.intensity * (window * cone / distance2);
+  return at;
+}
+
+// Radiance towards `out_ws` of punctual light reflected at a point. `normal_ws` is the shading normal on the viewer's side.
+vec3 reflected_punctual_light(Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 geometric_normal_ws, vec3 out_ws) {
+  const mat3 frame = frame_around(normal_ws);
+  const vec3 out_direction = out_ws * frame;
+  vec3 radiance = vec3(0.0);
+  for (uint i = 0u; i < light_count; ++i) {
+    const LightSample at = light_at(lights[i], position_ws);
+    const vec3 reflected = brdf_times_cosine(brdf, out_direction, at.to_light_ws * frame) * at.irradiance;
+    const float facing = dot(geometric_normal_ws, at.to_light_ws) > 0.0 ? 1.0 : 0.0;
+    radiance += reflected * (facing * light_visibility(lights[i], position_ws));
+  }
+  return radiance;
+}

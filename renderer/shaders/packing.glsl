@@ -1,0 +1,18 @@
+// Unit vectors as two signed-normalised numbers: the octahedral map of Cigolle et al. 2014, "A survey of efficient
+// representations for independent unit vectors".
+
+vec2 octahedral_from_unit(vec3 unit) {
+  const vec2 projected = unit.xy / (abs(unit.x) + abs(unit.y) + abs(unit.z));
+  const vec2 signs = vec2(projected.x >= 0.0 ? 1.0 : -1.0, projected.y >= 0.0 ? 1.0 : -1.0);
+  return unit.z >= 0.0 ? projected : (1.0 - abs(projected.yx)) * signs;
+}
+
+vec3 unit_from_octahedral(vec2 octahedral) {
+  vec3 unit = vec3(octahedral, 1.0 - abs(octahedral.x) - abs(octahedral.y));
+  const float fold = max(-unit.z, 0.0);
+  unit.x += unit.x >= 0.0 ? -fold : fold;
+  unit.y += unit.y >= 0.0 ? -fold : fold;
+  return normalize(unit);
+}
+
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }  // BT.709

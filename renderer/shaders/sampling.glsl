@@ -1,0 +1,74 @@
+// Random numbers and directions. All are functions of (pixel, sample, seed): the same request gives the same bytes.
+
+const float kPi = 3.14159265358979;
+
+// A good 32-bit mixer: Wellons 2018, "lowbias32".
+uint hash(uint x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+
+uint hash(uvec3 v) { return hash(v.x + hash(v.y + hash(v.z))); }
+
+// Nested uniform (Owen) scrambling of a bit-reversed number: Laine and Karras 2011, with the constants of
+// Vegdahl 2021 ("Owen scrambling, building a better LK hash").
+uint owen_scramble_reversed(uint x, uint seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+uint owen_scramble(uint x, uint seed) { return bitfieldReverse(owen_scramble_reversed(bitfieldReverse(x), seed)); }
+
+// The second Sobol dimension without a table: multiplication by the Pascal matrix over GF(2) in five steps (Ahmed 2024).
+uint sobol_second_dimension(uint index) {
+  index ^= (index << 16);
+  index ^= (index & 0x00ff00ffu) << 8;
+  index ^= (index & 0x0f0f0f0fu) << 4;
+  index ^= (index & 0x33333333u) << 2;
+  index ^= (index & 0x55555555u) << 1;
+  return bitfieldReverse(index);
+}
+
+float unit_interval(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }  // [0, 1)
+
+// Point `index` of an Owen-scrambled, shuffled Sobol (0,2)-sequence: Burley 2020, "Practical hash-based Owen scrambling".
+// Different seeds give independent sequences, so that further dimensions are further calls.
+vec2 sobol_2d(uint index, uint seed) {
+  const uint shuffled = owen_scramble(index, hash(seed));
+  const uint first = owen_scramble(bitfieldReverse(shuffled), hash(seed ^ 0xa511e9b3u));
+  const uint second = owen_scramble(sobol_second_dimension(shuffled), hash(seed ^ 0x63d83595u));
+  return vec2(unit_interval(first), unit_interval(second));
+}
+
+float sobol_1d(uint index, uint seed) {
+  const uint shuffled = owen_scramble(index, hash(seed));
+  return unit_interval(owen_scramble(bitfieldReverse(shuffled), hash(seed ^ 0xa511e9b3u)));
+}
+
+// An orthonormal frame whose third column is `normal`: Duff et al. 2017, "Building an orthonormal basis, revisited".
+mat3 frame_around(vec3 normal) {
+  const float s = normal.z >= 0.0 ? 1.0 : -1.0;
+  const float a = -1.0 / (s + normal.z);
+  const float b = normal.x * normal.y * a;
+  return mat3(vec3(1.0 + s * normal.x * normal.x * a, s * b, -s * normal.x),
+              vec3(b, s + normal.y * normal.y * a, -normal.y), normal);
+}
+
+// Direction with density cos(theta) / pi about +Z: Malley's method over the concentric disk map (Shirley and Chiu 1997).
+vec3 cosine_hemisphere(vec2 u) {
+  const vec2 square = 2.0 * u - 1.0;
+  const bool wide = abs(square.x) > abs(square.y);
+  const float radius = wide ? square.x : square.y;
+  const float ratio = wide ? square.y / square.x : (square.y != 0.0 ? square.x / square.y : 0.0);
+  const float phi = wide ? (kPi / 4.0) * ratio : kPi / 2.0 - (kPi / 4.0) * ratio;
+  const vec2 disk = radius * vec2(cos(phi), sin(phi));
+  return vec3(disk, sqrt(max(0.0, 1.0 - dot(disk, disk))));
+}

@@ -1,0 +1,60 @@
+// A shaded point: material, textures and vertex attributes come together. Needs scene_data, brdf, packing and, with
+// HAS_TEXTURES, textures.
+
+struct Attributes {
+  vec3 normal_ws;       // unit, interpolated
+  vec3 tangent_ws;      // not normalised
+  float handedness;
+  vec2 uv0;
+  vec2 uv1;
+  vec4 color;
+};
+
+struct Surface {
+  vec4 base_color;      // with coverage in a
+  float metallic;
+  float roughness;
+  vec3 emission;        // nit
+  vec3 normal_ws;       // unit, normal map applied, not yet turned towards the viewer
+};
+
+// `footprint` in units of uv: how wide an area the lookups should average.
+Surface shade_surface(Material material, Attributes at, float footprint) {
+  Surface surface;
+  surface.base_color = material.base_color * at.color;
+  surface.metallic = material.metallic;
+  surface.roughness = material.roughness;
+  surface.emission = material.emission;
+  surface.normal_ws = at.normal_ws;
+#ifdef HAS_TEXTURES
+  if (material.base_color_texture.slot != 0u)
+    surface.base_color *= sample_texture(material.base_color_texture, at.uv0, at.uv1, footprint);
+  if (material.metallic_roughness_texture.slot != 0u) {
+    const vec4 texel = sample_texture(material.metallic_roughness_texture, at.uv0, at.uv1, footprint);
+    surface.roughness *= texel.g;
+    surface.metallic *= texel.b;
+  }
+  if (material.emissive_texture.slot != 0u)
+    surface.emission *= sample_texture(material.emissive_texture, at.uv0, at.uv1, footprint).rgb;
+  if (material.normal_texture.slot != 0u) {
+    vec3 tangent_space = sample_texture(material.normal_texture, at.uv0, at.uv1, footprint).xyz * 2.0 - 1.0;
+    tangent_space.xy *= material.normal_scale;
+    const vec3 tangent = at.tangent_ws - at.normal_ws * dot(at.normal_ws, at.tangent_ws);
+    if (dot(tangent, tangent) > 1e-12) {
+      const vec3 t = normalize(tangent);
+      const vec3 b = at.handedness * cross(at.normal_ws, t);
+      surface.normal_ws = normalize(t * tangent_space.x + b * tangent_space.y + at.normal_ws * tangent_space.z);
+    }
+  }
+#endif
+  return surface;
+}
+
+// A normal the viewer can see: one that a normal map or interpolation turned away is bent back to the horizon, so that
+// no pixel goes black at grazing angles.
+vec3 visible_shading_normal(vec3 normal_ws, vec3 to_viewer_ws) {
+  const float kLeastCosine = 0.01;
+  const float cosine = dot(normal_ws, to_viewer_ws);
+  if (cosine >= kLeastCosine) return normal_ws;
+  return normalize(normal_ws + (kLeastCosine - cosine) * to_viewer_ws);
+}

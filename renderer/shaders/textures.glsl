@@ -1,0 +1,52 @@
+// Material textures: all images of a scene in arrays of four sizes, sRGB-coded and linear ones apart, so that any hit
+// can read any texture. Wrapping and nearest filtering are done here, since one array holds textures of every sampler.
+// Needs passes/bindings.glsl and shaders/scene_data.glsl.
+
+layout(binding = UNIT_TEXTURES_SRGB) uniform sampler2DArray srgb_textures[TEXTURE_CLASSES];
+layout(binding = UNIT_TEXTURES_LINEAR) uniform sampler2DArray linear_textures[TEXTURE_CLASSES];
+
+const float kTextureClassSize[TEXTURE_CLASSES] = float[](128.0, 512.0, 1024.0, 2048.0);
+
+float wrap_coordinate(float x, uint mode, float size) {
+  const float half_texel = 0.5 / size;
+  const float mirrored = 1.0 - abs(mod(x, 2.0) - 1.0);
+  const float clamped = clamp(mode == 1u ? mirrored : x, half_texel, 1.0 - half_texel);
+  return mode == 0u ? x : clamped;
+}
+
+struct TextureLookup {
+  uint array;    // 0 to 3 sRGB, 4 to 7 linear
+  vec3 position; // uv and layer
+  float lod;
+};
+
+// `footprint` is the width of the area to filter, in units of uv.
+TextureLookup texture_lookup(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+  const uint slot = use.slot;
+  TextureLookup lookup;
+  lookup.array = slot & 7u;
+  const float size = kTextureClassSize[lookup.array & 3u];
+  const mat2 uv_matrix = mat2(use.uv_transform.xy, use.uv_transform.zw);
+  vec2 uv = uv_matrix * ((slot & 0x200000u) != 0u ? uv1 : uv0) + use.uv_offset;
+  const float scale = max(length(uv_matrix[0]), length(uv_matrix[1]));
+  lookup.lod = (slot & 0x100000u) != 0u ? log2(max(footprint * scale * size, 1e-6)) : 0.0;
+  uv = vec2(wrap_coordinate(uv.x, (slot >> 14) & 3u, size), wrap_coordinate(uv.y, (slot >> 16) & 3u, size));
+  const bool nearest = lookup.lod <= 0.0 ? (slot & 0x40000u) != 0u : (slot & 0x80000u) != 0u;
+  if (nearest) uv = (floor(uv * size) + 0.5) / size;
+  lookup.position = vec3(uv, float((slot >> 3) & 0x7ffu));
+  return lookup;
+}
+
+vec4 sample_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+  const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
+  switch (lookup.array) {
+    case 0u: return textureLod(srgb_textures[0], lookup.position, lookup.lod);
+    case 1u: return textureLod(srgb_textures[1], lookup.position, lookup.lod);
+    case 2u: return textureLod(srgb_textures[2], lookup.position, lookup.lod);
+    case 3u: return textureLod(srgb_textures[3], lookup.position, lookup.lod);
+    case 4u: return textureLod(linear_textures[0], lookup.position, lookup.lod);
+    case 5u: return textureLod(linear_textures[1], lookup.position, lookup.lod);
+    case 6u: return textureLod(linear_textures[2], lookup.position, lookup.lod);
+    default: return textureLod(linear_textures[3], lookup.position, lookup.lod);
+  }
+}
