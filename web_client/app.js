@@ -1,0 +1,254 @@
+// The viewer's parts, put together: the user's hands -> inputs -> the server -> frames and state -> what is shown.
+import { CameraDriver } from "./camera_driver.js";
+import { Connection } from "./connection.js";
+import { FrameView } from "./frame_view.js";
+import { Gestures } from "./gestures.js";
+import { Inputs } from "./inputs.js";
+import { LightHandles } from "./light_handles.js";
+import { LightPanel } from "./light_panel.js";
+import { Banner, show_note } from "./notices.js";
+import { OrbitCamera } from "./orbit_camera.js";
+import { Panel } from "./panel.js";
+import { wanted_size } from "./picture_size.js";
+import { problem_from, words_of } from "./problem.js";
+import { ack, input, ProtocolError } from "./protocol.js";
+import { SessionModel } from "./session_model.js";
+import { hash_of, parse_hash } from "./share.js";
+import { listen_for_shortcuts } from "./shortcuts.js";
+import { Stats } from "./stats.js";
+import { Transport } from "./transport.js";
+import { Uploader } from "./upload.js";
+import { connect_chrome } from "./chrome.js";
+
+const kResizeWaitMs = 120;
+const kHashWaitMs = 400;
+const kSizeKey = "lightwell.picture_size";
+
+const base = new URL(".", location.href);
+const stage = document.getElementById("stage");
+const wished = parse_hash(location.hash);
+let picture_size = localStorage.getItem(kSizeKey) ?? "auto";
+let asked_size = { width: 0, height: 0 };
+let was_open = false;
+let held_acks = [];
+
+const inputs = new Inputs(send_input);
+const model = new SessionModel((seq, member) => inputs.is_newer_than(seq, member));
+const orbit = new OrbitCamera();
+const frames = new FrameView(document.getElementById("picture"), frame_done);
+const banner = new Banner(() => connection.connect());
+
+function send_input(seq, change) {
+  try {
+    return connection.send(input(seq, change));
+  } catch (error) {  // a value the protocol does not know; kept, it would stop every later input
+    if (!(error instanceof ProtocolError)) throw error;
+    show_note(`That cannot be asked for: ${error.message}`, "trouble");
+    return true;
+  }
+}
+
+/** The user's wish: shown at once, sent with the next animation frame. */
+function push(input, at_ms) {
+  model.ask(input);
+  inputs.push(input, at_ms);
+}
+
+const camera = new CameraDriver(model, orbit, { push, rect: () => frames.rect(), animate: () => gestures.animate() });
+const gestures = new Gestures(frames.canvas, orbit, {
+  rect: () => frames.rect(),
+  begin: () => camera.begin(),
+  moved: (at_ms) => camera.moved(at_ms),
+});
+const panel = new Panel(document.getElementById("panel"), model, {
+  push,
+  open_scene,
+  choose_file: () => uploader.choose(),
+  use_camera: (index) => camera.use(index),
+  picture_size: () => picture_size,
+  set_picture_size,
+  exposure_ev: () => stats?.server?.exposure_ev ?? 0,
+});
+const stats = new Stats(model, panel.stats_place);
+new LightPanel(panel.lights_place, model, push);
+const handles = new LightHandles(document.getElementById("light-layer"), document.getElementById("sky-dial"), model, {
+  push,
+  rect: () => frames.rect(),
+});
+const transport = new Transport(model, { push, follow: () => camera.toggle_follow(), fit: () => camera.fit() });
+const uploader = new Uploader(base, {
+  most_bytes: () => model.limits.max_upload_bytes,
+  is_builtin: (name) => model.scenes.some((entry) => entry.name === name && entry.builtin),
+  opened: async (name) => {
+    model.set({ scenes: await scene_list() });
+    open_scene(name);
+  },
+});
+const chrome = connect_chrome(model, stats, { push, screenshot });
+
+const connection = new Connection(base, {
+  session_request: async () => {
+    const request = { ...current_size(), playing: model.playing };
+    if (model.scene === null) return { ...request, scene: await first_scene(), ...wished };
+    const { scene, settings, time_s } = model;
+    return { ...request, scene, camera: model.camera, settings, time_s };
+  },
+  hello: () => ({ codecs: ["jpeg"], ...current_size(), device_pixel_ratio: devicePixelRatio, role: "driver" }),
+  on_state: connection_state,
+  on_welcome: welcomed,
+  on_message: (message) => {
+    if (message.type === "state") model.apply(message);
+    if (message.type === "pose") model.keep_pose(message);
+    if (message.type === "stats") {
+      stats.server_says(message);
+      panel.show_exposure();
+    }
+    if (message.type === "error") refused(message);
+  },
+  on_frame: (frame) => frames.receive(frame),
+  on_refused: (problem) => {
+    const can_do_without = model.scene === null && Object.keys(wished).length > 0;
+    if (can_do_without) show_note(`The address asks for something that is not here. ${problem.message}`, "trouble");
+    delete wished.scene;
+    delete wished.camera;
+    return can_do_without;
+  },
+});
+
+function connection_state(state, { wait_ms, reason }) {
+  stage.dataset.connection = state;
+  chrome.show_connection(state, was_open);
+  if (state === "waiting") {
+    const text = was_open ? "The connection is lost." : "The server does not answer.";
+    banner.count_down(text, wait_ms);
+  } else if (state === "connecting" && was_open) {
+    banner.show("Connecting again.", false);
+  } else if (state === "stopped") {
+    banner.show(reason, true);
+  } else if (state === "open") {
+    banner.hide();
+    was_open = true;
+  }
+}
+
+/** A stream is open. What the user asked for and no frame has answered is asked for again. */
+function welcomed(message, is_new_session) {
+  const { camera: own_camera, settings, playing, edits } = model;
+  const lost = inputs.awaited.length > 0 && !is_new_session;
+  held_acks = [];
+  stats.restart();
+  model.poses.clear();
+  if (is_new_session) inputs.restart();
+  model.apply(message);
+  if (lost) push({ camera: own_camera, settings, playing });
+  if (edits.length > 0 && (lost || is_new_session)) push({ edits });
+  if (was_open) show_note(is_new_session ? "Connected again, in a new session." : "Connected again.");
+  asked_size = current_size();
+  inputs.push(asked_size);
+  inputs.flush();
+}
+
+/** The server refused an input: says so, and shows again what really is. */
+async function refused(message) {
+  show_note(words_of(message.problem, message.problem?.status), "trouble");
+  const response = await fetch(new URL(`v1/sessions/${connection.session}`, base), { cache: "no-store" }).catch(() => null);
+  if (response?.ok) model.apply({ ...(await response.json()), type: "session" });
+}
+
+function frame_done(frame, times) {
+  const { header } = frame;
+  if (document.hidden) held_acks.push(ack(header.frame, times));  // the server stops when nobody looks
+  else connection.send(ack(header.frame, times));
+  if (times.shown_ms === undefined) return;
+  model.frame_shown(header);
+  stats.frame_shown(frame, times, inputs.answered(header.input_seq, times.shown_ms));
+  Object.assign(stage.dataset, { frame: header.frame, seq: header.input_seq, final: header.is_final });
+  handles.place();
+  chrome.show_status();
+}
+
+document.addEventListener("visibilitychange", () => {
+  connection.set_paused(document.hidden);
+  if (document.hidden) return;
+  held_acks.forEach((ack) => connection.send(ack));
+  held_acks = [];
+});
+
+async function scene_list() {
+  const response = await fetch(new URL("v1/scenes", base), { cache: "no-store" });
+  if (!response.ok) throw await problem_from(response);
+  return (await response.json()).scenes;
+}
+
+/** What to open when the address names no scene: the one the server was started with. */
+const first_scene = async () => wished.scene ?? (await scene_list())[0].name;
+
+function open_scene(name) {
+  camera.forget();
+  push({ scene: name, camera: null, time_s: 0, playing: true });
+}
+
+async function screenshot() {
+  const blob = await frames.png();
+  if (!blob) return;
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = `${model.scene}-${model.time_s.toFixed(2)}s.png`;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  show_note(`Saved as ${link.download}`);
+}
+
+function current_size() {
+  const is_slow = model.device === "" || model.is_software_device();
+  return wanted_size(picture_size, stage.getBoundingClientRect(), devicePixelRatio, model.limits, is_slow);
+}
+
+function set_picture_size(choice) {
+  picture_size = choice;
+  localStorage.setItem(kSizeKey, choice);
+  ask_for_size();
+}
+
+function ask_for_size() {
+  const size = current_size();
+  if (size.width === asked_size.width && size.height === asked_size.height) return;
+  asked_size = size;
+  inputs.push(size);
+}
+
+let resize_timer = 0;
+function resized() {
+  frames.fit();
+  handles.place();
+  clearTimeout(resize_timer);
+  resize_timer = setTimeout(ask_for_size, kResizeWaitMs);
+}
+new ResizeObserver(resized).observe(stage);
+
+let hash_timer = 0;
+model.subscribe((changed) => {
+  if (!changed.has("camera") && !changed.has("scene")) return;
+  clearTimeout(hash_timer);
+  hash_timer = setTimeout(() => history.replaceState(null, "", `#${hash_of(model.scene, model.camera)}`), kHashWaitMs);
+});
+addEventListener("hashchange", () => {
+  const asked = parse_hash(location.hash);
+  if (asked.scene && asked.scene !== model.scene) open_scene(asked.scene);
+  if (asked.camera) push({ camera: asked.camera });
+});
+
+listen_for_shortcuts({
+  " ": () => transport.toggle(),
+  1: () => push({ settings: { view: "final" } }),
+  2: () => push({ settings: { view: "direct" } }),
+  3: () => push({ settings: { view: "indirect" } }),
+  f: () => camera.fit(),
+  c: () => camera.toggle_follow(),
+  s: screenshot,
+  h: () => chrome.toggle_panel(),
+  l: () => stage.classList.toggle("without-handles"),
+  "?": () => chrome.open_help(),
+});
+
+connection.connect();

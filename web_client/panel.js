@@ -1,0 +1,160 @@
+// The side panel: its sections, and a control for each of the renderer's settings.
+import { make, make_choice, make_icon, make_slider, make_toggle } from "./controls.js";
+import { kPictureSizes } from "./picture_size.js";
+import { scene_title } from "./session_model.js";
+import { short_number } from "./stats.js";
+
+const kSamples = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
+const kIndirectSizes = [32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
+const kShadowSizes = [128, 256, 512, 1024, 2048, 4096];
+const kMethodNames = { thesis: "Thesis", realtime: "Realtime", reference: "Reference" };
+const kViews = [
+  ["final", "Final picture"], ["direct", "Direct light"], ["indirect", "Indirect light"], ["albedo", "Albedo"],
+  ["normal", "Normals"], ["depth", "Depth"], ["occlusion-distance", "Distance of hits"],
+];
+const kOwnCamera = "own";
+const kExposure = { min: -16, max: 16, step: 0.1 };
+
+export class Panel {
+  /**
+   * @param {HTMLElement} element @param {object} model a SessionModel
+   * @param {object} owner `push(input, at_ms)`, `open_scene(name)`, `choose_file()`, `use_camera(index)`,
+   *   `picture_size()` and `set_picture_size(choice)`, `exposure_ev()`: what is applied at present
+   */
+  constructor(element, model, owner) {
+    this.model = model;
+    this.owner = owner;
+    this.shows = [];
+    const section = (id, title, open, ...rows) => {
+      const body = make("div", { class: "section-body" }, ...rows);
+      const details = make("details", { id: `section-${id}`, open: stored(id) ?? open },
+        make("summary", {}, make("h2", { textContent: title })), body);
+      details.addEventListener("toggle", () => store(id, details.open));
+      element.append(details);
+      return body;
+    };
+    section("scene", "Scene", true, ...this.scene_rows());
+    section("picture", "Picture", true, ...this.picture_rows());
+    section("light", "Light transport", true, ...this.transport_rows());
+    this.lights_place = section("lights", "Lights", true);
+    this.stats_place = section("stats", "Performance", true);
+    section("advanced", "Advanced", false, ...this.advanced_rows());
+    model.subscribe((changed) => this.shows.forEach((show) => show(changed)));
+  }
+
+  /** Keeps a control at what the model says whenever one of `members` changes. */
+  keep(members, show) {
+    this.shows.push((changed) => members.some((member) => changed.has(member)) && show(this.model));
+  }
+
+  /** A control bound to one of the renderer's settings. */
+  setting(name, make_control, options) {
+    const tell = (value, at_ms) => this.owner.push({ settings: { [name]: value } }, at_ms);
+    const control = make_control({ ...options, on_input: tell, on_change: tell });
+    this.keep(["settings"], (model) => name in model.settings && control.set(model.settings[name]));
+    return control;
+  }
+
+  scene_rows() {
+    const { owner } = this;
+    const scene = make_choice({ label: "Scene", options: [], on_change: (name) => owner.open_scene(name) });
+    const facts = make("p", { class: "hint" });
+    this.keep(["scenes", "scene"], (model) => {
+      scene.offer(model.scenes.map((entry) => [entry.name, scene_title(entry.name)]));
+      scene.set(model.scene);
+      facts.textContent = facts_of(model.scene_entry());
+    });
+    const camera = make_choice({
+      label: "Camera", options: [], on_change: (value) => value !== kOwnCamera && owner.use_camera(Number(value)),
+    });
+    this.keep(["scenes", "scene", "camera"], (model) => {
+      const { cameras } = model.scene_entry();
+      const named = cameras.map((name, index) => [String(index), name || `Camera ${index + 1}`]);
+      const follows = model.follows_scene_camera();
+      camera.offer(follows ? named : [...named, [kOwnCamera, "Your own"]]);
+      camera.set(follows ? String(model.camera?.index ?? 0) : kOwnCamera);
+      camera.row.hidden = cameras.length < 2;
+    });
+    const open = make("button", { type: "button", class: "text-button is-wide" }, make_icon("open"), "Open a .glb file");
+    open.addEventListener("click", () => owner.choose_file());
+    return [scene.row, facts, camera.row, open];
+  }
+
+  picture_rows() {
+    const { owner } = this;
+    const view = this.setting("view", make_choice, { label: "Show", options: kViews });
+    const size = make_choice({
+      label: "Size", options: kPictureSizes, hint: "Pixels the server renders; the picture is scaled to the window",
+      on_change: (choice) => owner.set_picture_size(choice),
+    });
+    size.set(owner.picture_size());
+    const automatic = make_toggle({
+      label: "Automatic exposure",
+      on_change: (on) => owner.push({ settings: { exposure_ev: on ? null : Number(owner.exposure_ev().toFixed(1)) } }),
+    });
+    const exposure = make_slider({
+      label: "Exposure", ...kExposure, format: (ev) => `${ev > 0 ? "+" : ""}${Number(ev).toFixed(1)} EV`,
+      on_input: (ev, at_ms) => owner.push({ settings: { exposure_ev: ev } }, at_ms),
+    });
+    this.show_exposure = () => exposure.set(this.model.settings.exposure_ev ?? owner.exposure_ev());
+    this.keep(["settings"], ({ settings }) => {
+      const is_automatic = (settings.exposure_ev ?? null) === null;
+      automatic.set(is_automatic);
+      exposure.enable(!is_automatic);
+      this.show_exposure();
+    });
+    const tone = this.setting("tone_map", make_choice, {
+      label: "Tone curve", options: [["neutral", "Neutral"], ["linear", "Linear"]],
+    });
+    return [view.row, size.row, automatic.row, exposure.row, tone.row];
+  }
+
+  transport_rows() {
+    const method = this.setting("method", make_choice, { label: "Method", options: [] });
+    this.keep(["methods"], (model) => method.offer(model.methods.map((name) => [name, kMethodNames[name] ?? name])));
+    const samples = this.setting("samples", make_slider, {
+      label: "Samples", values: kSamples, hint: "Directions for each pixel of the indirect map",
+    });
+    this.keep(["limits"], (model) => samples.limit(model.limits.max_samples));
+    const indirect_size = this.setting("indirect_size", make_slider, {
+      label: "Indirect map", values: kIndirectSizes, format: (value) => `${value} px`,
+      hint: "Longer side of the map that indirect light is computed on",
+    });
+    const bounces = this.setting("bounces", make_slider, {
+      label: "Bounces", min: 0, max: 8, step: 1, format: (value) => (Number(value) === 0 ? "Direct only" : String(value)),
+    });
+    const denoise = this.setting("denoise", make_toggle, {
+      label: "Denoise", hint: "Smooths the indirect map without crossing edges",
+    });
+    return [method.row, samples.row, indirect_size.row, bounces.row, denoise.row];
+  }
+
+  advanced_rows() {
+    const estimator = this.setting("estimator", make_choice, {
+      label: "Estimator", options: [["corrected", "Corrected"], ["literal", "Literal"]],
+      hint: "Literal follows the published formula to the letter",
+    });
+    const shadow_size = this.setting("shadow_size", make_slider, {
+      label: "Shadow map", values: kShadowSizes, format: (value) => `${value} px`,
+    });
+    const shadow_filter = this.setting("shadow_filter", make_slider, {
+      label: "Shadow filter", min: 1, max: 15, step: 2, format: (value) => `${value} px`,
+    });
+    const reset = make("button", { type: "button", class: "text-button is-wide", textContent: "Reset all settings" });
+    reset.addEventListener("click", () => this.owner.push({ settings: this.model.default_settings ?? {} }));
+    return [estimator.row, shadow_size.row, shadow_filter.row, reset];
+  }
+}
+
+function facts_of(entry) {
+  const facts = [`${short_number(entry.triangles ?? 0)} triangles`];
+  facts.push(entry.duration_s > 0 ? `${Number(entry.duration_s.toFixed(1))} s` : "still");
+  return facts.join(" · ");
+}
+
+function stored(id) {
+  const text = localStorage.getItem(`lightwell.open.${id}`);
+  return text === null ? undefined : text === "true";
+}
+
+const store = (id, open) => localStorage.setItem(`lightwell.open.${id}`, String(open));
