@@ -9,7 +9,7 @@
 namespace lightwell::gl {
 
 Texture::Texture(std::string label, GLenum format, glm::ivec2 size_px, const TextureOptions& options)
-    : format_(format), size_px_(size_px), layers_(options.layers) {
+    : format_(format), size_px_(size_px), layers_(options.layers), array_(options.target == GL_TEXTURE_2D_ARRAY) {
   LIGHTWELL_CHECK_OP(size_px.x, >, 0);
   LIGHTWELL_CHECK_OP(size_px.y, >, 0);
   while (glGetError() != GL_NO_ERROR) {
@@ -45,6 +45,7 @@ Texture& Texture::operator=(Texture&& other) noexcept {
   format_ = other.format_;
   size_px_ = std::exchange(other.size_px_, glm::ivec2(0));
   layers_ = other.layers_;
+  array_ = other.array_;
   return *this;
 }
 
@@ -59,7 +60,7 @@ Framebuffer::Framebuffer(std::string label, std::initializer_list<const Texture*
   glCreateFramebuffers(1, &id_);
   glObjectLabel(GL_FRAMEBUFFER, id_, -1, label.c_str());
   const auto attach = [&](GLenum point, const Texture& texture) {
-    if (texture.layers() > 1)
+    if (texture.is_array())
       glNamedFramebufferTextureLayer(id_, point, texture.id(), 0, layer);
     else
       glNamedFramebufferTexture(id_, point, texture.id(), 0);

@@ -32,6 +32,7 @@ class Texture {
   GLenum format() const { return format_; }
   glm::ivec2 size_px() const { return size_px_; }
   int layers() const { return layers_; }
+  bool is_array() const { return array_; }
   explicit operator bool() const { return id_ != 0; }
 
   void bind(GLuint unit) const { glBindTextureUnit(unit, id_); }
@@ -44,6 +45,7 @@ class Texture {
   GLenum format_ = 0;
   glm::ivec2 size_px_{0};
   int layers_ = 1;
+  bool array_ = false;
 };
 
 /// A framebuffer over textures that outlive it.

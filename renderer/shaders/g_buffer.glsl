@@ -5,11 +5,6 @@ layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;  // material | 
 layout(binding = UNIT_G_EMISSION) uniform sampler2D g_emission;   // nit
 layout(binding = UNIT_G_DEPTH) uniform sampler2D g_depth;         // reversed; 0: nothing there
 
-uvec4 pack_g_surface(vec3 normal_ws, vec3 geometric_normal_ws, vec3 base_color, float metallic) {
-  return uvec4(packSnorm2x16(octahedral_from_unit(normal_ws)), packSnorm2x16(octahedral_from_unit(geometric_normal_ws)),
-               packUnorm2x16(base_color.rg), packUnorm2x16(vec2(base_color.b, metallic)));
-}
-
 struct GBufferPoint {
   bool valid;                // false: background
   float view_depth_m;

@@ -16,3 +16,9 @@ vec3 unit_from_octahedral(vec2 octahedral) {
 }
 
 float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }  // BT.709
+
+// The G-buffer's packed words; shaders/g_buffer.glsl reads them.
+uvec4 pack_g_surface(vec3 normal_ws, vec3 geometric_normal_ws, vec3 base_color, float metallic) {
+  return uvec4(packSnorm2x16(octahedral_from_unit(normal_ws)), packSnorm2x16(octahedral_from_unit(geometric_normal_ws)),
+               packUnorm2x16(base_color.rg), packUnorm2x16(vec2(base_color.b, metallic)));
+}
