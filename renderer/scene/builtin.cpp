@@ -14,6 +14,7 @@ struct BuiltinScene {
 };
 
 constexpr BuiltinScene kScenes[] = {
+    {"atrium", builtin::make_atrium},
     {"cornell", builtin::make_cornell},
 };
 

@@ -69,8 +69,8 @@ Scene make_cornell() {
   spot.kind = LightKind::kSpot;
   spot.color = {1.0f, 0.85f, 0.62f};
   spot.intensity = 12.0f;
-  spot.inner_cone_angle = 1.0f;
-  spot.outer_cone_angle = 1.5f;
+  spot.inner_cone_angle = 0.8f;
+  spot.outer_cone_angle = 1.22f;
   const glm::vec3 center = 0.5f * (low + high);
   scene.light_node(spot, {center - glm::vec3(0.0f, 0.01f, 0.0f), look_along({0.0f, -1.0f, 0.0f}), glm::vec3(1.0f)});
 

@@ -1,6 +1,7 @@
 #include "renderer/scene/builtin/mesh_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lightwell::builtin {
@@ -39,7 +40,95 @@ std::vector<glm::vec4> tangents_of(const std::vector<Vertex>& vertices, const st
   return tangents;
 }
 
+/// Twice the area below which a triangle counts as none, in square metres.
+constexpr float kNoArea = 1e-8f;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+bool shrinks_to_a_point(const Grid& grid, int row) {
+  for (int c = 1; c < grid.columns; ++c)
+    if (glm::distance(grid.at(c, row), grid.at(0, row)) > 1e-5f) return false;
+  return true;
+}
+
 }  // namespace
+
+Grid make_grid(int columns, int rows, bool closed, const std::function<glm::vec3(float u, float v)>& point) {
+  Grid grid{columns, rows, closed, {}};
+  const auto last_column = static_cast<float>(closed ? columns : columns - 1);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c)
+      grid.points.push_back(
+          point(static_cast<float>(c) / last_column, static_cast<float>(r) / static_cast<float>(rows - 1)));
+  return grid;
+}
+
+std::vector<glm::vec3> grid_normals(const Grid& grid) {
+  std::vector<glm::vec3> normals(grid.points.size(), glm::vec3(0.0f));
+  const int spans = grid.closed ? grid.columns : grid.columns - 1;
+  for (int r = 0; r + 1 < grid.rows; ++r)
+    for (int c = 0; c < spans; ++c) {
+      const int right = (c + 1) % grid.columns;
+      // The cross product of a quad's diagonals is twice its area along its mean normal.
+      const glm::vec3 n = glm::cross(grid.at(right, r + 1) - grid.at(c, r), grid.at(c, r + 1) - grid.at(right, r));
+      for (const int corner :
+           {r * grid.columns + c, r * grid.columns + right, (r + 1) * grid.columns + c, (r + 1) * grid.columns + right})
+        normals[at(corner)] += n;
+    }
+  for (int r = 0; r < grid.rows; ++r) {
+    if (!shrinks_to_a_point(grid, r)) continue;
+    glm::vec3 sum(0.0f);
+    for (int c = 0; c < grid.columns; ++c) sum += normals[at(r * grid.columns + c)];
+    for (int c = 0; c < grid.columns; ++c) normals[at(r * grid.columns + c)] = sum;
+  }
+  for (glm::vec3& n : normals) n = glm::normalize(n);
+  return normals;
+}
+
+void MeshBuilder::grid(const Grid& grid, int first_row, int last_row) {
+  if (last_row < 0) last_row = grid.rows - 1;
+  const std::vector<glm::vec3> normals = grid_normals(grid);
+  const auto first = static_cast<std::uint32_t>(vertices_.size());
+  const int columns = grid.closed ? grid.columns + 1 : grid.columns;  // the seam has two sides in uv
+  for (int r = first_row; r <= last_row; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const int source = r * grid.columns + c % grid.columns;
+      vertices_.push_back({grid.points[at(source)],
+                           normals[at(source)],
+                           {static_cast<float>(c) / static_cast<float>(columns - 1),
+                            1.0f - static_cast<float>(r) / static_cast<float>(grid.rows - 1)}});
+    }
+  const auto add_unless_flat = [&](int a, int b, int c) {
+    const auto position = [&](int i) { return vertices_[first + at(i)].position; };
+    if (glm::length(glm::cross(position(b) - position(a), position(c) - position(a))) < kNoArea) return;
+    for (const int i : {a, b, c}) indices_.push_back(first + static_cast<std::uint32_t>(i));
+  };
+  for (int r = 0; r < last_row - first_row; ++r)
+    for (int c = 0; c + 1 < columns; ++c) {
+      const int corner = r * columns + c;
+      add_unless_flat(corner, corner + 1, corner + columns + 1);
+      add_unless_flat(corner, corner + columns + 1, corner + columns);
+    }
+}
+
+void MeshBuilder::polygon(std::span<const glm::vec3> corners) {
+  glm::vec3 n(0.0f);
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    n += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+  n = glm::normalize(n);
+  const glm::vec3 u = glm::normalize(corners[1] - corners[0]), v = glm::cross(n, u);
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  for (const glm::vec3& p : corners) {
+    // uv in metres, v downward as glTF's image rows go.
+    vertices.push_back({p, n, {glm::dot(p - corners[0], u), -glm::dot(p - corners[0], v)}});
+    const auto i = static_cast<std::uint32_t>(vertices.size() - 1);
+    if (i >= 2) indices.insert(indices.end(), {0u, i - 1, i});
+  }
+  add(vertices, indices);
+}
 
 void MeshBuilder::add(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices) {
   const auto first = static_cast<std::uint32_t>(vertices_.size());
@@ -48,19 +137,11 @@ void MeshBuilder::add(std::span<const Vertex> vertices, std::span<const std::uin
 }
 
 void MeshBuilder::triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  const glm::vec3 n = glm::normalize(glm::cross(b - a, c - a));
-  const glm::vec3 u = glm::normalize(b - a), v = glm::cross(n, u);
-  const auto uv = [&](const glm::vec3& p) { return glm::vec2(glm::dot(p - a, u), -glm::dot(p - a, v)); };
-  add(std::array{Vertex{a, n, uv(a)}, Vertex{b, n, uv(b)}, Vertex{c, n, uv(c)}}, std::array{0u, 1u, 2u});
+  polygon(std::array{a, b, c});
 }
 
 void MeshBuilder::quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  const glm::vec3 n = glm::normalize(glm::cross(c - a, d - b));
-  const glm::vec3 u = glm::normalize(b - a), v = glm::cross(n, u);
-  // uv in metres, v downward as glTF's image rows go.
-  const auto uv = [&](const glm::vec3& p) { return glm::vec2(glm::dot(p - a, u), -glm::dot(p - a, v)); };
-  add(std::array{Vertex{a, n, uv(a)}, Vertex{b, n, uv(b)}, Vertex{c, n, uv(c)}, Vertex{d, n, uv(d)}},
-      std::array{0u, 1u, 2u, 0u, 2u, 3u});
+  polygon(std::array{a, b, c, d});
 }
 
 void MeshBuilder::box(const glm::vec3& low, const glm::vec3& high) {

@@ -5,6 +5,9 @@
 
 namespace lightwell::builtin {
 
+/// The default: a vaulted hall at the foot of a light well, the sun crossing it in a minute.
+Scene make_atrium();
+
 /// The Cornell box at 2 m: 32 triangles, still.
 Scene make_cornell();
 

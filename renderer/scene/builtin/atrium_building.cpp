@@ -1,0 +1,146 @@
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "renderer/scene/builtin/atrium.h"
+#include "renderer/scene/builtin/shapes.h"
+#include "renderer/scene/builtin/textures.h"
+
+namespace lightwell::builtin::atrium {
+namespace {
+
+constexpr float kLeft = -6.2f, kRight = kHalfWidth + kWallThickness;  // the outsides
+constexpr float kAisleWall = -5.2f, kArcadeBack = -3.4f;
+constexpr float kArchSpring = 2.3f;
+constexpr int kBays = 4;
+constexpr float kBay = kHallFront / kBays;  // from column to column
+constexpr float kArchRadius = 0.5f * kBay - 0.19f;
+
+/// The half circle over `center` from its left foot over the top to its right foot.
+void add_arch(std::vector<glm::vec2>& outline, const glm::vec2& center, float radius, int spans) {
+  for (int i = 0; i <= spans; ++i) {
+    const float angle = glm::pi<float>() * static_cast<float>(spans - i) / static_cast<float>(spans);
+    outline.push_back(center + radius * glm::vec2(std::cos(angle), std::sin(angle)));
+  }
+}
+
+/// Thick on all sides, so that no light finds a way between two sheets.
+MeshBuilder well_walls() {
+  MeshBuilder mesh;
+  mesh.box({kLeft, -1.2f, kWellBack - 1.0f}, {kRight, kWellTop, kWellBack});  // back
+  mesh.box({-kRight, -1.2f, kWellBack}, {-kHalfWidth, kWellTop, 0.0f});       // left
+  mesh.box({kHalfWidth, -1.2f, kWellBack}, {kRight, kWellTop, 0.0f});         // right
+  mesh.box({-kRight, kVaultTop, 0.0f}, {kRight, kWellTop, 1.0f});             // above the vault
+  return mesh;
+}
+
+MeshBuilder hall_walls() {
+  MeshBuilder mesh;
+  mesh.box({kLeft, 0.0f, kHallFront}, {kRight, kVaultTop, kHallFront + 1.0f});  // behind the camera
+  mesh.box({kLeft, 0.0f, -1.0f}, {-kRight, 5.4f, 0.0f});                        // end of the aisle
+  return mesh;
+}
+
+/// The aisle's ceiling stops short of its outer wall: daylight washes down there.
+MeshBuilder aisle_ceiling() {
+  MeshBuilder mesh;
+  mesh.box({-4.85f, kVaultSpring, 0.0f}, {-kRight, 5.4f, kHallFront});
+  return mesh;
+}
+
+/// The barrel vault and the masonry around it.
+MeshBuilder vault() {
+  std::vector<glm::vec2> outline = {{-kRight, kVaultTop}, {-kRight, kVaultSpring}};
+  add_arch(outline, {0.0f, kVaultSpring}, kHalfWidth, 28);
+  outline.insert(outline.end(), {{kRight, kVaultSpring}, {kRight, kVaultTop}});
+  return extrude(outline, kHallFront);
+}
+
+/// The arches between hall and aisle, drawn in (z, y) and turned to stand along the hall.
+MeshBuilder arcade() {
+  std::vector<glm::vec2> outline = {{0.0f, kVaultSpring}, {0.0f, kArchSpring}};
+  for (int bay = 0; bay < kBays; ++bay)
+    add_arch(outline, {kBay * (static_cast<float>(bay) + 0.5f), kArchSpring}, kArchRadius, 16);
+  outline.insert(outline.end(), {{kHallFront, kArchSpring}, {kHallFront, kVaultSpring}});
+  MeshBuilder mesh;
+  // (x, y, z) of the extrusion becomes (-z, y, x), so that it fills x from kArcadeBack to the hall.
+  const glm::mat4 turn({0, 0, 1, 0}, {0, 1, 0, 0}, {-1, 0, 0, 0}, {-kHalfWidth, 0, 0, 1});
+  mesh.append(extrude(outline, -kHalfWidth - kArcadeBack), turn);
+  return mesh;
+}
+
+MeshBuilder column() {
+  MeshBuilder mesh = bevelled_box({-0.20f, 0.0f, -0.20f}, {0.20f, 0.12f, 0.20f}, 0.012f);
+  std::vector<glm::vec2> profile = {{0.17f, 0.12f},  {0.185f, 0.15f}, {0.17f, 0.18f}, {0.15f, 0.19f},
+                                    {0.145f, 0.21f}, {0.13f, 0.225f}, {0.13f, 0.225f}};
+  for (int i = 1; i <= 5; ++i) {  // the shaft, tapering with a slight swell
+    const float t = static_cast<float>(i) / 5.0f;
+    profile.emplace_back(0.13f - 0.022f * t * t, 0.225f + 1.735f * t);
+  }
+  profile.insert(profile.end(), {{0.108f, 1.96f},
+                                 {0.125f, 1.965f},
+                                 {0.125f, 1.99f},
+                                 {0.108f, 1.995f},
+                                 {0.108f, 1.995f},
+                                 {0.112f, 2.06f},
+                                 {0.135f, 2.12f},
+                                 {0.18f, 2.16f}});
+  mesh.append(lathe(profile, 18));
+  mesh.append(bevelled_box({-0.195f, 2.16f, -0.195f}, {0.195f, kArchSpring, 0.195f}, 0.012f));
+  return mesh;
+}
+
+/// From the hall down into the well.
+MeshBuilder steps() {
+  MeshBuilder mesh;
+  constexpr int kSteps = 3;
+  for (int i = 0; i < kSteps; ++i) {
+    const float top = -0.16f * static_cast<float>(i + 1), front = -0.36f * static_cast<float>(i + 1);
+    mesh.append(bevelled_box({-3.02f, kWellFloor - 0.05f, front}, {3.02f, top, 0.05f}, 0.01f));
+  }
+  return mesh;
+}
+
+MeshBuilder roof() {
+  MeshBuilder mesh;
+  const float low = kWellTop - 0.02f, high = kWellTop + 0.5f;
+  mesh.box({-kRight, low, -6.5f}, {-2.6f, high, 1.0f});
+  mesh.box({2.6f, low, -6.5f}, {kRight, high, 1.0f});
+  mesh.box({-2.6f, low, -0.6f}, {2.6f, high, 1.0f});
+  mesh.box({-2.6f, low, -6.5f}, {2.6f, high, -5.3f});
+  return mesh;
+}
+
+}  // namespace
+
+void add_building(SceneBuilder& scene) {
+  const int lime = scene.material("lime plaster", plaster(256, {0.80f, 0.76f, 0.69f}, 0.05f), 4.0f, 0.95f);
+  const int ochre = scene.material("ochre wash", plaster(256, {0.78f, 0.44f, 0.12f}, 0.10f), 4.0f, 0.9f);
+  const int turquoise = scene.material("turquoise wash", plaster(256, {0.22f, 0.46f, 0.52f}, 0.10f), 4.0f, 0.9f);
+  const int limestone = scene.material("limestone", {0.70f, 0.66f, 0.59f}, 0.75f);
+  const int paving = scene.material("flagstones", flagstones(512, 5, 6, {0.62f, 0.57f, 0.50f}, 0.012f), 4.2f, 0.45f);
+
+  MeshBuilder floors, right_wall, aisle_wall;
+  floors.box({kLeft, -1.2f, 0.0f}, {kRight, 0.0f, kHallFront + 1.0f});
+  floors.box({-kRight, -1.2f, -6.5f}, {kRight, kWellFloor, 0.0f});
+  right_wall.box({kHalfWidth, 0.0f, 0.0f}, {kRight, kVaultSpring, kHallFront});
+  aisle_wall.box({kLeft, 0.0f, 0.0f}, {kAisleWall, 5.4f, kHallFront});
+  scene.mesh_node("floors", {{floors, paving}});
+  scene.mesh_node("well walls", {{well_walls(), lime}});
+  scene.mesh_node("hall walls", {{hall_walls(), lime}});
+  scene.mesh_node("aisle ceiling", {{aisle_ceiling(), lime}});
+  scene.mesh_node("roof", {{roof(), lime}});
+  scene.mesh_node("vault", {{vault(), lime}});
+  scene.mesh_node("hall wall", {{right_wall, ochre}});
+  scene.mesh_node("aisle wall", {{aisle_wall, turquoise}});
+  scene.mesh_node("arcade", {{arcade(), limestone}});
+  scene.mesh_node("steps", {{steps(), limestone}});
+
+  const int column_mesh = scene.mesh("column", {{column(), limestone}});
+  for (int i = 0; i <= kBays; ++i) {
+    const glm::vec3 foot(0.5f * (kArcadeBack - kHalfWidth), 0.0f, kBay * static_cast<float>(i));
+    scene.mesh_node("column " + std::to_string(i + 1), column_mesh, {foot, glm::quat(1, 0, 0, 0), glm::vec3(1.0f)});
+  }
+}
+
+}  // namespace lightwell::builtin::atrium
