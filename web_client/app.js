@@ -139,6 +139,7 @@ function welcomed(message, is_new_session) {
   stats.restart();
   model.poses.clear();
   if (is_new_session) inputs.restart();
+  stage.dataset.session = message.session;
   model.apply(message);
   if (lost) push({ camera: own_camera, settings, playing });
   if (edits.length > 0 && (lost || is_new_session)) push({ edits });
