@@ -43,8 +43,8 @@ void main() {
     const vec3 radiance = vec3(unpackHalf2x16(packed_radiance.x), unpackHalf2x16(packed_radiance.y).x);
     const vec3 reflectance =
         brdf_times_cosine(point.brdf, out_direction, rays[index].direction_ws * frame) / max(pdf, 1e-20);
-    sum += pdf > 0.0 ? (literal == 1 ? radiance : radiance * reflectance) : vec3(0.0);
     const float t = hits[index].t;
+    sum += pdf > 0.0 ? (literal == 1 ? radiance / max(t * t, 1e-12) : radiance * reflectance) : vec3(0.0);
     distance_sum += t >= 0.0 ? vec2(t, 1.0) : vec2(0.0);
   }
   const vec3 albedo = max(directional_albedo(point.brdf, max(out_direction.z, 0.0)), vec3(1e-4));

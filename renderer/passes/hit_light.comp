@@ -26,13 +26,14 @@ uniform int literal;  // 1: Algorithm 2 as printed
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 
-// Algorithm 2 as printed: the hit's BRDF between the direction to the hit and the one to the camera, over r^2.
-vec3 literal_weight(Ray ray, Hit hit, HitPoint point, Brdf brdf) {
+// Algorithm 2 as printed: the hit's BRDF between the direction to the hit and the one to the camera. Its 1/r^2 is
+// applied where the sum is, since near hits would leave the range of halves.
+vec3 literal_weight(Ray ray, HitPoint point, Brdf brdf) {
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 in_direction = abs((camera.eye_ws.xyz - ray.origin_ws) * frame);
   const vec3 out_direction = abs(-ray.direction_ws * frame);
   const vec3 unit_in = normalize(in_direction);
-  return brdf_times_cosine(brdf, out_direction, unit_in) / (max(unit_in.z, 1e-4) * max(hit.t * hit.t, 1e-8));
+  return brdf_times_cosine(brdf, out_direction, unit_in) / max(unit_in.z, 1e-4);
 }
 
 vec3 light_of_hit(Ray ray, Hit hit) {
@@ -43,7 +44,7 @@ vec3 light_of_hit(Ray ray, Hit hit) {
                               point.surface.roughness, material.f0_dielectric, material.specular_factor);
   vec3 radiance = point.surface.emission + reflected_punctual_light(brdf, point.position_ws, point.surface.normal_ws,
                                                                     point.geometric_normal_ws, -ray.direction_ws);
-  if (literal == 1) radiance *= literal_weight(ray, hit, point, brdf);
+  if (literal == 1) radiance *= literal_weight(ray, point, brdf);
   return radiance;
 }
 

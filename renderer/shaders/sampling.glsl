@@ -29,11 +29,11 @@ uint owen_scramble(uint x, uint seed) { return bitfieldReverse(owen_scramble_rev
 
 // The second Sobol dimension without a table: multiplication by the Pascal matrix over GF(2) in five steps (Ahmed 2024).
 uint sobol_second_dimension(uint index) {
-  index ^= (index << 16);
-  index ^= (index & 0x00ff00ffu) << 8;
-  index ^= (index & 0x0f0f0f0fu) << 4;
-  index ^= (index & 0x33333333u) << 2;
-  index ^= (index & 0x55555555u) << 1;
+  index ^= index >> 16;
+  index ^= (index & 0xff00ff00u) >> 8;
+  index ^= (index & 0xf0f0f0f0u) >> 4;
+  index ^= (index & 0xccccccccu) >> 2;
+  index ^= (index & 0xaaaaaaaau) >> 1;
   return bitfieldReverse(index);
 }
 

@@ -1,0 +1,153 @@
+#include "tests/image/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#ifdef LIGHTWELL_WITH_EMBREE
+#include "renderer/tracing/embree/embree_tracer.h"
+#endif
+#include "renderer/tracing/tracer.h"
+
+namespace lightwell::testing {
+
+Renderer& shared_renderer() {
+  static const std::unique_ptr<Renderer> renderer = [] {
+    RendererOptions options;
+#ifdef LIGHTWELL_WITH_EMBREE
+    options.make_native_tracer = [] { return make_embree_tracer(); };
+#endif
+    return std::make_unique<Renderer>(options);
+  }();
+  return *renderer;
+}
+
+Material lambert(glm::vec3 albedo, glm::vec3 emission) {
+  Material material;
+  material.base_color_factor = glm::vec4(albedo, 1.0f);
+  material.metallic_factor = 0.0f;
+  material.specular_factor = 0.0f;
+  material.emissive_factor = emission;
+  return material;
+}
+
+int SceneMaker::material(const Material& material) {
+  scene_.materials.push_back(material);
+  return static_cast<int>(scene_.materials.size()) - 1;
+}
+
+void SceneMaker::quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int material) {
+  const glm::vec3 normal = glm::normalize(glm::cross(edge_u, edge_v));
+  Primitive primitive;
+  primitive.positions = {corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
+  primitive.normals.assign(4, normal);
+  primitive.tangents.assign(4, glm::vec4(glm::normalize(edge_u), 1.0f));
+  primitive.indices = {0, 1, 2, 0, 2, 3};
+  primitive.material = material;
+  primitive.bounds_min = primitive.bounds_max = corner;
+  for (const glm::vec3& p : primitive.positions) {
+    primitive.bounds_min = glm::min(primitive.bounds_min, p);
+    primitive.bounds_max = glm::max(primitive.bounds_max, p);
+  }
+  auto mesh = std::make_shared<Mesh>();
+  mesh->primitives.push_back(std::move(primitive));
+  Node node;
+  node.mesh = static_cast<int>(scene_.meshes.size());
+  scene_.meshes.push_back(std::move(mesh));
+  scene_.roots.push_back(static_cast<int>(scene_.nodes.size()));
+  scene_.nodes.push_back(std::move(node));
+}
+
+void SceneMaker::room(glm::vec3 low, glm::vec3 high, int material) {
+  const glm::vec3 size = high - low;
+  const glm::vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+  quad(low, z, x, material);        // floor, facing up
+  quad(high, -x, -z, material);     // ceiling: cross(-x, -z) points down
+  quad(low, x, y, material);        // back, facing +z
+  quad(high, -y, -x, material);     // front, facing -z
+  quad(low, y, z, material);        // left, facing +x
+  quad(high, -z, -y, material);     // right, facing -x
+}
+
+void SceneMaker::add_light(const Light& light, glm::vec3 position, glm::vec3 direction) {
+  const glm::vec3 up = std::abs(direction.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  Node node;
+  node.matrix = glm::inverse(glm::lookAt(position, position + direction, up));
+  node.light = static_cast<int>(scene_.lights.size());
+  scene_.lights.push_back(light);
+  scene_.roots.push_back(static_cast<int>(scene_.nodes.size()));
+  scene_.nodes.push_back(std::move(node));
+}
+
+void SceneMaker::directional(glm::vec3 direction, float lux) {
+  Light light;
+  light.kind = LightKind::kDirectional;
+  light.intensity = lux;
+  add_light(light, glm::vec3(0.0f), glm::normalize(direction));
+}
+
+void SceneMaker::point(glm::vec3 position, float candela) {
+  Light light;
+  light.kind = LightKind::kPoint;
+  light.intensity = candela;
+  add_light(light, position, glm::vec3(0, 0, -1));
+}
+
+void SceneMaker::spot(glm::vec3 position, glm::vec3 direction, float candela, float outer_angle) {
+  Light light;
+  light.kind = LightKind::kSpot;
+  light.intensity = candela;
+  light.outer_cone_angle = outer_angle;
+  light.inner_cone_angle = 0.9f * outer_angle;
+  add_light(light, position, glm::normalize(direction));
+}
+
+PlacedCamera look_at(glm::vec3 eye, glm::vec3 target, float yfov) {
+  const glm::vec3 direction = glm::normalize(target - eye);
+  const glm::vec3 up = std::abs(direction.y) > 0.9f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+  PlacedCamera camera;
+  camera.camera.yfov = yfov;
+  camera.camera.znear = 0.01f;
+  camera.world_from_view = glm::inverse(glm::lookAt(eye, target, up));
+  return camera;
+}
+
+glm::vec3 Pixels::at(int x, int y) const {
+  const std::size_t first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x) +
+                                 static_cast<std::size_t>(x));
+  return {rgb[first], rgb[first + 1], rgb[first + 2]};
+}
+
+glm::vec3 Pixels::mean() const {
+  glm::dvec3 sum(0.0);
+  for (int y = 0; y < size_px.y; ++y)
+    for (int x = 0; x < size_px.x; ++x) sum += glm::dvec3(at(x, y));
+  return glm::vec3(sum / static_cast<double>(size_px.x * size_px.y));
+}
+
+Pixels render(const Scene& scene, const PlacedCamera& camera, const Settings& settings, glm::ivec2 size_px,
+              int frames) {
+  Renderer& renderer = shared_renderer();
+  const auto view = renderer.make_view();
+  FrameRequest request;
+  request.camera = camera;
+  request.size_px = size_px;
+  request.settings = settings;
+  request.want_linear = true;
+  request.accumulate = frames > 1;
+  Pixels pixels{size_px, {}};
+  for (int frame = 0; frame < frames; ++frame) {
+    Result<Frame> result = renderer.render(scene, request, *view);
+    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message());
+    if (!result) return pixels;
+    pixels.rgb = std::move(result->linear_rgb);
+  }
+  for (const std::string& message : renderer.context().take_debug_messages()) ADD_FAILURE() << "GL: " << message;
+  for (const float value : pixels.rgb) {
+    EXPECT_TRUE(std::isfinite(value) && value >= 0.0f) << value;
+    if (!std::isfinite(value)) break;
+  }
+  return pixels;
+}
+
+}  // namespace lightwell::testing
