@@ -134,7 +134,7 @@ function connection_state(state, { wait_ms, reason }) {
 /** A stream is open. What the user asked for and no frame has answered is asked for again. */
 function welcomed(message, is_new_session) {
   const { camera: own_camera, settings, playing, edits } = model;
-  const lost = inputs.awaited.length > 0 && !is_new_session;
+  const lost = inputs.has_unanswered() && !is_new_session;
   held_acks = [];
   stats.restart();
   model.poses.clear();
@@ -152,7 +152,8 @@ function welcomed(message, is_new_session) {
 /** The server refused an input: says so, and shows again what really is. */
 async function refused(message) {
   show_note(words_of(message.problem, message.problem?.status), "trouble");
-  const response = await fetch(new URL(`v1/sessions/${connection.session}`, base), { cache: "no-store" }).catch(() => null);
+  const address = new URL(`v1/sessions/${connection.session}`, base);
+  const response = await fetch(address, { cache: "no-store" }).catch(() => null);
   if (response?.ok) model.apply({ ...(await response.json()), type: "session" });
 }
 
@@ -167,6 +168,11 @@ function frame_done(frame, times) {
   handles.place();
   chrome.show_status();
 }
+
+// A page that is gone for good needs no session; one that the browser may bring back does.
+addEventListener("pagehide", (event) => {
+  if (!event.persisted) connection.end_session();
+});
 
 document.addEventListener("visibilitychange", () => {
   connection.set_paused(document.hidden);

@@ -1,4 +1,5 @@
-// Who has the camera: the scene's own, or the user, who takes it over with the first touch at the very view on the screen.
+// Who has the camera: the scene's own, or the user, who takes it over with the first touch at the very view on the
+// screen.
 
 export class CameraDriver {
   /**

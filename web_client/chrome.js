@@ -39,7 +39,7 @@ export function connect_chrome(model, stats, owner) {
 
   function show_connection(state, was_open) {
     connection = state;
-    if (!was_open) curtain.querySelector("p").textContent = state === "open" ? "Making the first picture" : kConnecting[state];
+    if (!was_open) curtain.querySelector("p").textContent = kConnecting[state] ?? "Making the first picture";
     show_status();
   }
 

@@ -14,11 +14,13 @@ const kSilenceMs = 8000;  // no word from the server for so long: the line is de
  * @typedef {object} ConnectionOwner
  * @property {() => Promise<object>} session_request the body of POST /v1/sessions, as things are now
  * @property {() => object} hello members of `hello` besides `resume`
- * @property {(state: 'connecting'|'open'|'waiting'|'stopped', detail: {wait_ms?: number, reason?: string}) => void} on_state
+ * @property {(state: 'connecting'|'open'|'waiting'|'stopped', detail: {wait_ms?: number, reason?: string}) => void}
+ *   on_state
  * @property {(message: object, is_new_session: boolean) => void} on_welcome
  * @property {(message: object) => void} on_message every other text message
  * @property {(frame: object) => void} on_frame
- * @property {(problem: Problem) => boolean} on_refused the session was refused; true: ask again (session_request changed)
+ * @property {(problem: Problem) => boolean} on_refused the session was refused; true: ask again (session_request
+ *   changed)
  */
 
 export class Connection {
@@ -67,6 +69,12 @@ export class Connection {
     this.is_paused = is_paused;
     this.heard_ms = performance.now();
     if (!is_paused && !this.socket) this.connect();
+  }
+
+  /** Gives the session back, from a page that is being closed. */
+  end_session() {
+    if (!this.session) return;
+    fetch(new URL(`v1/sessions/${this.session}`, this.base), { method: "DELETE", keepalive: true }).catch(() => {});
   }
 
   /** True if a new session was made, false if the old one is still there. */

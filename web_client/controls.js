@@ -1,5 +1,5 @@
-// The panel's controls: a labelled row each, made from a description. A control shows what it is given with `set` and tells
-// only what the user does.
+// The panel's controls: a labelled row each, made from a description. A control shows what it is given with `set` and
+// tells only what the user does.
 
 let last_id = 0;
 

@@ -17,7 +17,8 @@ export class Gestures {
   /**
    * @param {HTMLElement} element what is dragged on; keys count while it has the focus
    * @param {object} camera an OrbitCamera
-   * @param {object} owner `rect()`: the picture in CSS pixels relative to `element`; `begin()`: the camera is about to be
+   * @param {object} owner `rect()`: the picture in CSS pixels relative to `element`; `begin()`: the camera is about to
+   *   be
    *   used; `moved(at_ms)`: it has changed
    */
   constructor(element, camera, owner) {

@@ -1,5 +1,5 @@
-// What the user wants, on its way to the server: at most one message per animation frame, the newest value of each thing
-// in it, numbered so that a frame can say which it answers.
+// What the user wants, on its way to the server: at most one message per animation frame, the newest value of each
+// thing in it, numbered so that a frame can say which it answers.
 
 const kRemembered = 256;  // messages whose answer is awaited
 
@@ -72,6 +72,11 @@ export class Inputs {
     const input = this.awaited.find((entry) => entry.seq === seq);
     this.awaited = this.awaited.filter((entry) => entry.seq > seq);
     return input ? now_ms - input.at_ms : null;
+  }
+
+  /** True if something was asked for that no frame has answered. */
+  has_unanswered() {
+    return this.awaited.length > 0 || this.pending !== null;
   }
 
   /** A new session counts from 1 again; what was not answered never will be. */

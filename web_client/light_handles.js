@@ -1,5 +1,5 @@
-// Lights in the picture: a handle on each point and spot light, and a dial of the sky for the suns. A handle is dragged in
-// the plane that faces the camera; shift or the wheel moves it in depth; arrow keys do the same for the focused one.
+// Lights in the picture: a handle on each point and spot light, and a dial of the sky for the suns. A handle is dragged
+// in the plane that faces the camera; shift or the wheel moves it in depth; arrow keys do the same for the focused one.
 import { add, dot, scale } from "./vector.js";
 import { edits_of_light, dial_from_direction, direction_from_dial, hex_of_color, light_title } from "./lights.js";
 import { project, unproject, view_axes } from "./view_math.js";
@@ -26,11 +26,11 @@ export class LightHandles {
     this.handles = new Map();  // light index -> element
     this.held = null;          // {index, depth, offset}
     model.subscribe((changed) => {
-      if (changed.has("lights") || changed.has("view")) this.place();
+      if (changed.has("lights")) this.place();
     });
   }
 
-  /** Puts every handle where its light is seen. Call when the picture's rectangle changes too. */
+  /** Puts every handle where its light is seen. Call when the view or the picture's rectangle has changed. */
   place() {
     const { lights, view } = this.model;
     const shown = new Set();
@@ -192,5 +192,6 @@ function heading_of(view) {
   if (!view) return 0;
   const { forward, right } = view_axes(view);
   // Straight up or down there is no heading of its own; the picture's right is still to the right of it.
-  return Math.hypot(forward[0], forward[2]) > 1e-4 ? Math.atan2(forward[0], -forward[2]) : Math.atan2(right[2], right[0]);
+  const is_upright = Math.hypot(forward[0], forward[2]) < 1e-4;
+  return is_upright ? Math.atan2(right[2], right[0]) : Math.atan2(forward[0], -forward[2]);
 }

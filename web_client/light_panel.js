@@ -53,8 +53,8 @@ export class LightPanel {
       type: "range", min: -kSliderSteps, max: kSliderSteps, ariaLabel: `Intensity of ${title}`,
     });
     const number = make("output");
-    const element = make("div", { class: "light-row" }, color, make("span", { class: "light-name", textContent: title, title }),
-      power, slider, number);
+    const name = make("span", { class: "light-name", textContent: title, title });
+    const element = make("div", { class: "light-row" }, color, name, power, slider, number);
     const change = (members, event) => {
       const light = this.model.lights.find((entry) => entry.index === first.index);
       this.push({ edits: edits_of_light(light, members) }, event.timeStamp);

@@ -47,8 +47,8 @@ export function hex_of_color(color) {
 export const color_of_hex = (hex) => [1, 3, 5].map((at) => decode_srgb(parseInt(hex.slice(at, at + 2), 16) / 255));
 
 /**
- * Where a sun that shines along `direction` stands on a dial with the zenith in its middle and the horizon at its rim, up
- * being where the camera looks: [x, y] in -1..1, y down. Below the horizon it stands on the rim.
+ * Where a sun that shines along `direction` stands on a dial with the zenith in its middle and the horizon at its rim,
+ * up being where the camera looks: [x, y] in -1..1, y down. Below the horizon it stands on the rim.
  * @param {number[]} direction unit @param {number} heading the camera's, radians from -Z towards +X
  */
 export function dial_from_direction(direction, heading) {

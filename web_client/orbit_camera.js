@@ -34,8 +34,8 @@ export class OrbitCamera {
   }
 
   /**
-   * Takes over `view`. With `keep_target` it turns about the view's own target; else about the point of its axis that is
-   * nearest to the scene's middle, since a scene's camera says where it looks but not at what.
+   * Takes over `view`. With `keep_target` it turns about the view's own target; else about the point of its axis that
+   * is nearest to the scene's middle, since a scene's camera says where it looks but not at what.
    * @param {View} view @param {Bounds=} bounds @param {boolean=} keep_target
    */
   adopt(view, bounds, keep_target = false) {
@@ -85,8 +85,8 @@ export class OrbitCamera {
   }
 
   /**
-   * Brings the scene nearer by `factor` (above 1: nearer), keeping what is at the CSS pixel `point` in the target's plane
-   * where it is. At the nearest the camera goes on forwards, so that one can enter a room.
+   * Brings the scene nearer by `factor` (above 1: nearer), keeping what is at the CSS pixel `point` in the target's
+   * plane where it is. At the nearest the camera goes on forwards, so that one can enter a room.
    * @param {number} factor @param {{x: number, y: number}} point @param {object} rect
    */
   zoom(factor, point, rect) {

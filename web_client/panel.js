@@ -75,7 +75,7 @@ export class Panel {
       camera.set(follows ? String(model.camera?.index ?? 0) : kOwnCamera);
       camera.row.hidden = cameras.length < 2;
     });
-    const open = make("button", { type: "button", class: "text-button is-wide" }, make_icon("open"), "Open a .glb file");
+    const open = make_wide_button(make_icon("open"), "Open a .glb file");
     open.addEventListener("click", () => owner.choose_file());
     return [scene.row, facts, camera.row, open];
   }
@@ -121,7 +121,7 @@ export class Panel {
       hint: "Longer side of the map that indirect light is computed on",
     });
     const bounces = this.setting("bounces", make_slider, {
-      label: "Bounces", min: 0, max: 8, step: 1, format: (value) => (Number(value) === 0 ? "Direct only" : String(value)),
+      label: "Bounces", min: 0, max: 8, step: 1, format: (value) => (Number(value) === 0 ? "None" : String(value)),
     });
     const denoise = this.setting("denoise", make_toggle, {
       label: "Denoise", hint: "Smooths the indirect map without crossing edges",
@@ -140,11 +140,13 @@ export class Panel {
     const shadow_filter = this.setting("shadow_filter", make_slider, {
       label: "Shadow filter", min: 1, max: 15, step: 2, format: (value) => `${value} px`,
     });
-    const reset = make("button", { type: "button", class: "text-button is-wide", textContent: "Reset all settings" });
+    const reset = make_wide_button("Reset all settings");
     reset.addEventListener("click", () => this.owner.push({ settings: this.model.default_settings ?? {} }));
     return [estimator.row, shadow_size.row, shadow_filter.row, reset];
   }
 }
+
+const make_wide_button = (...content) => make("button", { type: "button", class: "text-button is-wide" }, ...content);
 
 function facts_of(entry) {
   const facts = [`${short_number(entry.triangles ?? 0)} triangles`];

@@ -1,4 +1,5 @@
-// How many pixels to ask the server for: the shape of the window, and as many as the chosen quality and the limits allow.
+// How many pixels to ask the server for: the shape of the window, and as many as the chosen quality and the limits
+// allow.
 
 /** The user's choices: the picture's longer side, or the window's own pixels. */
 export const kPictureSizes = [

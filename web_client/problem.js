@@ -1,6 +1,6 @@
 // The server's refusals in words: RFC 9457 problem documents.
 
-/** A refusal. `message` can be shown to a person; `status` is the HTTP status; `retry_after_s` if the server named it. */
+/** A refusal. `message` can be shown to a person, `status` is the HTTP status, `retry_after_s` 0 if unnamed. */
 export class Problem extends Error {
   constructor(document, status, retry_after_s = 0) {
     super(words_of(document, status));

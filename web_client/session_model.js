@@ -1,9 +1,9 @@
-// What the viewer knows of its session: the server's word, with what the user has just asked for laid over it, so that a
-// control answers the hand at once and never jumps back to an older truth.
+// What the viewer knows of its session: the server's word, with what the user has just asked for laid over it, so that
+// a control answers the hand at once and never jumps back to an older truth.
 
 const kMembers = [
-  "scene", "scenes", "settings", "camera", "playing", "time_s", "bounds", "view", "lights", "device", "limits", "methods",
-  "role",
+  "scene", "scenes", "settings", "camera", "playing", "time_s", "bounds", "view", "lights", "device", "limits",
+  "methods", "role",
 ];
 
 /** A scene's name as words: "rigged-figure" as "Rigged figure". @param {string} name */

@@ -1,4 +1,5 @@
-// The address keeps the scene and the camera, so that it can be sent to someone: #scene=atrium&eye=1,2,3&target=0,1,0&yfov=0.8
+// The address keeps the scene and the camera, so that it can be sent to someone:
+// #scene=atrium&eye=1,2,3&target=0,1,0&yfov=0.8
 
 const digits = (value) => Number(value.toFixed(3));
 

@@ -20,6 +20,7 @@ export function listen_for_shortcuts(actions) {
   addEventListener("click", (event) => {
     const was_pointer = event.detail > 0;
     const pressed = event.target.closest?.("button, .segmented label");
-    if (was_pointer && pressed && !pressed.closest("dialog")) document.getElementById("picture").focus({ preventScroll: true });
+    if (!was_pointer || !pressed || pressed.closest("dialog")) return;
+    setTimeout(() => document.getElementById("picture").focus({ preventScroll: true }));  // after the click's own focus
   });
 }

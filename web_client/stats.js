@@ -1,4 +1,5 @@
-// What is going on, in figures: frame rate, the time from input to picture and what it is made of, the renderer's stages.
+// What is going on, in figures: frame rate, the time from input to picture and what it is made of, the renderer's
+// stages.
 import { make } from "./controls.js";
 
 const kRateWindowMs = 1000;
@@ -6,6 +7,7 @@ const kSmooth = 0.25;  // share of a new value in a figure that would flicker ot
 const kParts = [
   ["render", "Render"], ["encode", "Encode"], ["network", "Network and waiting"], ["show", "Decode and show"],
 ];
+const kFacts = ["Rays", "Triangles", "Picture", "Received", "Exposure", "Device"];
 
 /** 1234567 as "1.23M", 1522 as "1,522". */
 export function short_number(value) {
@@ -16,6 +18,11 @@ export function short_number(value) {
 
 /** Milliseconds with as many digits as matter. */
 export const short_ms = (ms) => (ms < 9.95 ? ms.toFixed(1) : String(Math.round(ms)));
+
+/** Leaves an element alone that says so already, so that what a user has selected in it stays selected. */
+function write(element, text) {
+  if (element.textContent !== String(text)) element.textContent = text;
+}
 
 export class Stats {
   /** @param {object} model a SessionModel @param {HTMLElement} section the panel's place for it */
@@ -32,13 +39,16 @@ export class Stats {
   }
 
   build(section) {
-    this.headline = make("p", { class: "figures" });
+    const figure = (words) => make("span", {}, make("b"), ` ${words}`);
+    this.headline = make("p", { class: "figures" }, figure("frames a second"), figure("ms to picture"));
     this.bar = make("div", { class: "parts-bar" }, ...kParts.map(([part]) => make("i", { class: `part is-${part}` })));
     this.legend = make("ul", { class: "legend" }, ...kParts.map(([part, label]) =>
       make("li", { class: `is-${part}` }, make("span", { textContent: label }), make("output"))));
     this.stages = make("ul", { class: "stages", ariaLabel: "Time of each stage" });
-    this.facts = make("dl", { class: "facts" });
-    section.append(this.headline, this.bar, this.legend, make("h3", { textContent: "Stages of a frame" }), this.stages, this.facts);
+    const facts = kFacts.flatMap((name) => [make("dt", { textContent: name }), make("dd")]);
+    this.facts = make("dl", { class: "facts" }, ...facts);
+    const title = make("h3", { textContent: "Stages of a frame" });
+    section.append(this.headline, this.bar, this.legend, title, this.stages, this.facts);
   }
 
   /** Takes the server's `stats`. */
@@ -57,7 +67,8 @@ export class Stats {
 
   /**
    * A frame is on the screen.
-   * @param {object} frame @param {object} times its times on this machine @param {number | null} latency_ms since the input
+   * @param {object} frame @param {object} times its times on this machine @param {number | null} latency_ms since the
+   *   input
    *   it is the first to answer
    */
   frame_shown(frame, times, latency_ms) {
@@ -100,14 +111,12 @@ export class Stats {
     if (this.headline.closest("details")?.open === false || this.headline.offsetParent === null) return;
     const rate = this.frame_rate();
     const latency = this.latency_ms === null ? "–" : short_ms(this.latency_ms);
-    this.headline.replaceChildren(
-      make("span", {}, make("b", { textContent: Math.round(rate) }), " frames a second"),
-      make("span", {}, make("b", { textContent: latency }), " ms to picture"),
-    );
+    write(this.headline.children[0].firstChild, Math.round(rate));
+    write(this.headline.children[1].firstChild, latency);
     const total = Object.values(this.parts_ms).reduce((sum, ms) => sum + ms, 0) || 1;
     kParts.forEach(([part], i) => {
       this.bar.children[i].style.width = `${(100 * this.parts_ms[part]) / total}%`;
-      this.legend.children[i].lastChild.textContent = `${short_ms(this.parts_ms[part])} ms`;
+      write(this.legend.children[i].lastChild, `${short_ms(this.parts_ms[part])} ms`);
     });
     this.show_stages();
     this.show_facts(rate);
@@ -120,9 +129,9 @@ export class Stats {
     stages.forEach((stage, i) => {
       const row = this.stages.children[i] ?? this.stages.appendChild(
         make("li", {}, make("span"), make("i", { class: "bar" }), make("output")));
-      row.children[0].textContent = stage.name;
+      write(row.children[0], stage.name);
       row.children[1].style.setProperty("--share", stage.ms / longest);
-      row.children[2].textContent = `${short_ms(stage.ms)} ms`;
+      write(row.children[2], `${short_ms(stage.ms)} ms`);
     });
   }
 
@@ -130,15 +139,13 @@ export class Stats {
     const rays = this.server?.rays ?? 0;
     const received = this.bytes.reduce((sum, entry) => sum + entry.size, 0);
     const facts = [
-      ["Rays", `${short_number(rays)} a frame, ${short_number(rays * rate)} a second`],
-      ["Triangles", short_number(this.server?.triangles ?? this.model.scene_entry().triangles ?? 0)],
-      ["Picture", this.frame ? `${this.frame.header.width} × ${this.frame.header.height}` : "–"],
-      ["Received", `${((received * 8) / 1e6).toFixed(1)} Mbit/s`],
-      ["Exposure", this.server ? `${this.server.exposure_ev.toFixed(1)} EV` : "–"],
-      ["Device", this.model.device || "–"],
+      `${short_number(rays)} / frame · ${short_number(rays * rate)} / s`,
+      short_number(this.server?.triangles ?? this.model.scene_entry().triangles ?? 0),
+      this.frame ? `${this.frame.header.width} × ${this.frame.header.height}` : "–",
+      `${((received * 8) / 1e6).toFixed(1)} Mbit/s`,
+      this.server ? `${this.server.exposure_ev.toFixed(1)} EV` : "–",
+      this.model.device || "–",
     ];
-    this.facts.replaceChildren(...facts.flatMap(([name, value]) => [
-      make("dt", { textContent: name }), make("dd", { textContent: value, title: value }),
-    ]));
+    this.facts.querySelectorAll("dd").forEach((place, i) => write(place, facts[i]));
   }
 }

@@ -17,7 +17,10 @@ export function scene_name_of(file_name) {
   return name || "model";
 }
 
-/** Why a file cannot be opened, before any of it is sent; null if it may. @param {File} file @param {number} most_bytes */
+/**
+ * Why a file cannot be opened, said before any of it is sent; null if it may.
+ * @param {File} file @param {number} most_bytes @returns {string | null}
+ */
 export function refusal_of(file, most_bytes) {
   if (/\.gltf$/i.test(file.name)) {
     return `${file.name} keeps its data in other files. Export it as .glb, which holds everything.`;

@@ -1,5 +1,5 @@
-// Vectors as arrays of three numbers, quaternions as [x, y, z, w], matrices as 16 numbers column by column (glTF's order).
-// Every function returns a new value and changes none.
+// Vectors as arrays of three numbers, quaternions as [x, y, z, w], matrices as 16 numbers column by column (glTF's
+// order). Every function returns a new value and changes none.
 
 /** @typedef {[number, number, number]} Vec3 */
 

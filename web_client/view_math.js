@@ -1,5 +1,5 @@
-// Where a point of the scene stands in the picture, and back. A view is {eye, target, yfov}: metres and radians, up is +Y.
-// A rectangle is {x, y, width, height} in CSS pixels, y down.
+// Where a point of the scene stands in the picture, and back. A view is {eye, target, yfov}: metres and radians, up is
+// +Y. A rectangle is {x, y, width, height} in CSS pixels, y down.
 import { add, cross, dot, normalize, scale, subtract } from "./vector.js";
 
 /** The camera's axes in world space: unit vectors to the right, up and into the picture. */
@@ -14,8 +14,8 @@ export function view_axes(view) {
 export const pixels_per_tangent = (view, rect) => rect.height / (2 * Math.tan(view.yfov / 2));
 
 /**
- * Where `point` is seen: {x, y} in CSS pixels, and its depth in metres along the view's axis. Not in front of the camera
- * where the depth is not positive; x and y are then without meaning.
+ * Where `point` is seen: {x, y} in CSS pixels, and its depth in metres along the view's axis. Not in front of the
+ * camera where the depth is not positive; x and y are then without meaning.
  */
 export function project(point, view, rect) {
   const { right, up, forward } = view_axes(view);

@@ -14,7 +14,9 @@ export function make_glb() {
   const document = {
     asset: { version: "2.0" },
     extensionsUsed: ["KHR_lights_punctual"],
-    extensions: { KHR_lights_punctual: { lights: [{ type: "point", name: "lamp", intensity: 40, color: [1, 0.8, 0.6] }] } },
+    extensions: {
+      KHR_lights_punctual: { lights: [{ type: "point", name: "lamp", intensity: 40, color: [1, 0.8, 0.6] }] },
+    },
     scene: 0,
     scenes: [{ nodes: [0, 1, 2] }],
     nodes: [
@@ -23,7 +25,10 @@ export function make_glb() {
       { name: "eye", translation: [0, 1.2, 5], camera: 0 },
     ],
     cameras: [{ type: "perspective", perspective: { yfov: 0.7, znear: 0.05 } }],
-    materials: [{ pbrMetallicRoughness: { baseColorFactor: [0.8, 0.8, 0.8, 1], metallicFactor: 0, roughnessFactor: 1 }, doubleSided: true }],
+    materials: [{
+      pbrMetallicRoughness: { baseColorFactor: [0.8, 0.8, 0.8, 1], metallicFactor: 0, roughnessFactor: 1 },
+      doubleSided: true,
+    }],
     meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1, material: 0 }] }],
     accessors: [
       { bufferView: 0, componentType: kFloat, count: 8, type: "VEC3", min: [-2, 0, -1], max: [2, 2.5, 2] },

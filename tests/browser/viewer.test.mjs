@@ -15,16 +15,18 @@ const root = fileURLToPath(new URL("../..", import.meta.url));
 const program = process.env.LIGHTWELL ?? path.join(root, "build/release/lightwell");
 const screenshots = process.env.LIGHTWELL_SCREENSHOTS ?? path.join(root, "build/release/browser");
 const kDesktop = { viewport: { width: 1440, height: 900 } };
+const kLaptop = { viewport: { width: 1280, height: 720 } };
 const kPhone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 3, isMobile: true, hasTouch: true };
 
 let server, browser, line, viewer, page;
 
 before(async () => {
   mkdirSync(screenshots, { recursive: true });
-  server = process.env.LIGHTWELL_PORT ? { port: Number(process.env.LIGHTWELL_PORT), stop() {} } : await start_server(program);
+  const running_at = Number(process.env.LIGHTWELL_PORT ?? 0);  // to look at a server that runs already
+  server = running_at ? { port: running_at, stop() {} } : await start_server(program);
   line = await new Line(server.port).open();
   browser = await open_browser();
-  viewer = await ViewerPage.open(browser, `http://127.0.0.1:${line.port}/`, kDesktop);
+  viewer = await ViewerPage.open(browser, address(), kDesktop);
   page = viewer.page;
 });
 
@@ -35,9 +37,12 @@ after(async () => {
 });
 
 const keep = (name, of = page) => of.screenshot({ path: path.join(screenshots, `${name}.png`) });
+const address = () => `http://127.0.0.1:${line.port}/`;
 const seq = async () => Number((await viewer.stage()).seq);
 const answered = (input) => viewer.until(`the answer to input ${input}`, seq, (value) => value >= input);
 const setting = (label) => page.getByLabel(label, { exact: true });
+const canvas_width = () => page.$eval("#picture", (canvas) => canvas.width);
+const canvas_aspect = () => page.$eval("#picture", (canvas) => canvas.width / canvas.height);
 const status = () => page.textContent("#status-text");
 
 /** Does `act`, waits for the frame that answers it, and gives the picture before and after. */
@@ -124,7 +129,7 @@ test("the settings reach the picture", async () => {
   const [, back] = await pictures_around(() => setting("Show").selectOption("final"));
   assert.ok(difference(normals, back) > 1);
   await pictures_around(() => setting("Size").selectOption("1280"));
-  await viewer.until("the larger picture", () => page.$eval("#picture", (canvas) => canvas.width), (width) => width === 1280);
+  await viewer.until("the larger picture", canvas_width, (width) => width === 1280);
   await pictures_around(() => setting("Size").selectOption("auto"));
   await setting("Samples").fill("5");
 });
@@ -156,9 +161,10 @@ test("a lamp dragged in the picture lights another place", async () => {
   assert.ok(difference(earlier, later) > 1);
   const moved = await viewer.box(".light-handle.is-point");
   assert.ok(Math.hypot(moved.x - handle.x + 220, moved.y - handle.y - 40) < 3, "the handle stays under the pointer");
-  const half = (picture, from_x, to_x) =>
+  const columns = (picture, from_x, to_x) =>
     picture.grey.filter((_, i) => i % 32 >= from_x && i % 32 < to_x).reduce((sum, value) => sum + value, 0);
-  assert.ok(half(later, 0, 16) / half(later, 16, 32) > half(earlier, 0, 16) / half(earlier, 16, 32), "its left is brighter");
+  const left_share = (picture) => columns(picture, 0, 16) / columns(picture, 0, 32);
+  assert.ok(left_share(later) > left_share(earlier), "the left is brighter now");
   await keep("desktop-light");
   const [lit, dark] = await pictures_around(() => page.getByRole("switch", { name: "lamp on" }).uncheck());
   assert.ok(dark.mean < lit.mean);
@@ -172,7 +178,7 @@ test("what cannot be opened is refused in words", async () => {
   assert.match(words, /broken\.glb was not opened\. .{10,}/);
   await keep("desktop-refused");
   await viewer.drop_file("scene.gltf", Buffer.from("{}"));
-  await viewer.until("the second note", () => page.textContent("#toasts"), (text) => text.includes("Export it as .glb"));
+  await viewer.until("the second note", () => page.textContent("#toasts"), (text) => /Export it as \.glb/.test(text));
   viewer.errors = viewer.errors.filter((text) => !/status of 4\d\d/.test(text));  // Chromium reports every 4xx there
 });
 
@@ -221,8 +227,7 @@ test("keys: help, panel, handles; the panel's width goes to the picture", async 
   assert.equal(await page.isVisible("#help"), false);
   await page.keyboard.press("h");
   await viewer.until("the panel to go", () => viewer.box("#stage"), (box) => box.width === 1440);
-  await viewer.until("a picture of the window's shape", () => page.$eval("#picture", (canvas) => canvas.width / canvas.height),
-    (aspect) => Math.abs(aspect - 1.6) < 0.02);
+  await viewer.until("a picture of the window's shape", canvas_aspect, (aspect) => Math.abs(aspect - 1.6) < 0.02);
   await page.keyboard.press("l");
   assert.equal(await page.isVisible("#light-layer"), false);
   await page.keyboard.press("l");
@@ -243,7 +248,7 @@ test("everything can be reached by Tab, and shows that it has the focus", async 
 test("nothing was reported in the console", () => assert.deepEqual(viewer.errors, []));
 
 test("a laptop's window", async () => {
-  const laptop = await ViewerPage.open(browser, `http://127.0.0.1:${line.port}/`, { viewport: { width: 1280, height: 720 } });
+  const laptop = await ViewerPage.open(browser, address(), kLaptop);
   await laptop.more_frames(3);
   await laptop.page.waitForTimeout(700);
   await keep("laptop", laptop.page);
@@ -254,15 +259,16 @@ test("a laptop's window", async () => {
 });
 
 test("a phone: everything inside the screen, large enough for a finger, turned and pinched by touch", async () => {
-  const phone = await ViewerPage.open(browser, `http://127.0.0.1:${line.port}/`, kPhone);
+  const phone = await ViewerPage.open(browser, address(), kPhone);
   await phone.more_frames(2);
   await phone.page.waitForTimeout(500);
   await keep("phone", phone.page);
-  const boxes = await phone.page.$$eval("button, #view-switch label, .light-handle", (elements) =>
-    elements.filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest("#panel, dialog"))
-      .map((element) => ({ id: element.id, ...element.getBoundingClientRect().toJSON() })));
+  const boxes = await phone.page.$$eval("#stage button, #view-switch label", (elements) => elements
+    .filter((element) => element.checkVisibility({ visibilityProperty: true }))
+    .map((element) => ({ id: element.id, ...element.getBoundingClientRect().toJSON() })));
   for (const box of boxes) {
-    assert.ok(box.left >= 0 && box.right <= 390 && box.top >= 0 && box.bottom <= 844, `${JSON.stringify(box)} is outside`);
+    const is_inside = box.left >= 0 && box.right <= 390 && box.top >= 0 && box.bottom <= 844;
+    assert.ok(is_inside, `${JSON.stringify(box)} is outside`);
     if (box.id) assert.ok(box.width >= 40 && box.height >= 40, `${box.id} is ${box.width} x ${box.height}`);
   }
   assert.equal(await phone.page.evaluate(() => document.documentElement.scrollWidth), 390);
@@ -288,10 +294,11 @@ test("a phone: everything inside the screen, large enough for a finger, turned a
 });
 
 test("a long wait for the server can be cut short", async () => {
-  const lost = await ViewerPage.open(browser, `http://127.0.0.1:${line.port}/`, kDesktop);
+  const lost = await ViewerPage.open(browser, address(), kDesktop);
   await lost.more_frames(1);
   line.cut();
-  await lost.until("a wait of some seconds", () => lost.page.textContent("#banner-text"), (text) => /in [4-9] s/.test(text));
+  const words = () => lost.page.textContent("#banner-text");
+  await lost.until("a wait of some seconds", words, (text) => /in [4-9] s/.test(text));
   line.mend();
   await lost.page.click("#banner-button");
   await lost.page.waitForSelector("#banner", { state: "hidden", timeout: 2000 });

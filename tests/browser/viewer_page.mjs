@@ -12,7 +12,7 @@ const kWithinMs = 30000;
 export const open_browser = () => chromium.launch({ executablePath: kChromium, args: kFlags });
 
 export class ViewerPage {
-  /** @param {import("playwright-core").Browser} browser @param {string} address @param {object} options of the context */
+  /** Opens the viewer in a context of its own, with playwright's `options` for it. */
   static async open(browser, address, options) {
     const viewer = new ViewerPage();
     viewer.context = await browser.newContext({ acceptDownloads: true, ...options });
@@ -111,4 +111,5 @@ export class ViewerPage {
 }
 
 /** The mean difference of two pictures, in grey values. */
-export const difference = (a, b) => a.grey.reduce((sum, value, i) => sum + Math.abs(value - b.grey[i]), 0) / a.grey.length;
+export const difference = (a, b) =>
+  a.grey.reduce((sum, value, i) => sum + Math.abs(value - b.grey[i]), 0) / a.grey.length;

@@ -179,7 +179,8 @@ test("a pose counts from its own frame on", () => {
 });
 
 test("a light is moved and turned in its node's own space", () => {
-  const light = { index: 1, node: 4, kind: "spot", parent_from_world: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 0, 0, 1] };
+  const twice_and_aside = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 0, 0, 1];
+  const light = { index: 1, node: 4, kind: "spot", parent_from_world: twice_and_aside };
   const [translation, rotation] = edits_of_light(light, { position: [1, 2, 3], direction: [0, 0, -1] });
   assert.deepEqual(translation, { op: "replace", path: "/nodes/4/translation", value: [3, 4, 6] });
   close(rotation.value, [0, 0, 0, 1]);
@@ -230,7 +231,9 @@ test("the address keeps scene and camera, and nonsense in it is passed over", ()
   const camera = { eye: [1, 2.5, -3], target: [0, 1, 0], yfov: 0.8 };
   assert.deepEqual(parse_hash(`#${hash_of("atrium", camera)}`), { scene: "atrium", camera });
   assert.deepEqual(parse_hash(`#${hash_of("venus", { index: 2 })}`), { scene: "venus", camera: { index: 2 } });
-  for (const nonsense of ["#scene=../x", "#eye=1,2&target=0,0,0", "#eye=1,1,1&target=1,1,1", "#camera=-1", "#eye=a,b,c&target=1,2,3"]) {
+  for (const nonsense of [
+    "#scene=../x", "#eye=1,2&target=0,0,0", "#eye=1,1,1&target=1,1,1", "#camera=-1", "#eye=a,b,c&target=1,2,3",
+  ]) {
     assert.deepEqual(parse_hash(nonsense), {});
   }
 });
