@@ -16,6 +16,7 @@ struct BuiltinScene {
 constexpr BuiltinScene kScenes[] = {
     {"atrium", builtin::make_atrium},
     {"cornell", builtin::make_cornell},
+    {"helicopters", builtin::make_helicopters},
 };
 
 bool has_light(const Scene& scene) {

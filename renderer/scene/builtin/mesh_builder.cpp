@@ -87,29 +87,33 @@ std::vector<glm::vec3> grid_normals(const Grid& grid) {
   return normals;
 }
 
-void MeshBuilder::grid(const Grid& grid, int first_row, int last_row) {
-  if (last_row < 0) last_row = grid.rows - 1;
+void MeshBuilder::grid(const Grid& grid, const std::function<bool(int column, int row)>& wanted) {
   const std::vector<glm::vec3> normals = grid_normals(grid);
-  const auto first = static_cast<std::uint32_t>(vertices_.size());
   const int columns = grid.closed ? grid.columns + 1 : grid.columns;  // the seam has two sides in uv
-  for (int r = first_row; r <= last_row; ++r)
-    for (int c = 0; c < columns; ++c) {
-      const int source = r * grid.columns + c % grid.columns;
-      vertices_.push_back({grid.points[at(source)],
-                           normals[at(source)],
+  constexpr std::uint32_t kUnused = ~0u;
+  std::vector<std::uint32_t> vertex_of(at(columns * grid.rows), kUnused);
+  const auto vertex = [&](int c, int r) {
+    std::uint32_t& index = vertex_of[at(r * columns + c)];
+    if (index == kUnused) {
+      const std::size_t source = at(r * grid.columns + c % grid.columns);
+      index = static_cast<std::uint32_t>(vertices_.size());
+      vertices_.push_back({grid.points[source],
+                           normals[source],
                            {static_cast<float>(c) / static_cast<float>(columns - 1),
                             1.0f - static_cast<float>(r) / static_cast<float>(grid.rows - 1)}});
     }
-  const auto add_unless_flat = [&](int a, int b, int c) {
-    const auto position = [&](int i) { return vertices_[first + at(i)].position; };
-    if (glm::length(glm::cross(position(b) - position(a), position(c) - position(a))) < kNoArea) return;
-    for (const int i : {a, b, c}) indices_.push_back(first + static_cast<std::uint32_t>(i));
+    return index;
   };
-  for (int r = 0; r < last_row - first_row; ++r)
+  const auto add_unless_flat = [&](const glm::ivec2& a, const glm::ivec2& b, const glm::ivec2& c) {
+    const auto position = [&](const glm::ivec2& i) { return grid.at(i.x % grid.columns, i.y); };
+    if (glm::length(glm::cross(position(b) - position(a), position(c) - position(a))) < kNoArea) return;
+    for (const glm::ivec2& i : {a, b, c}) indices_.push_back(vertex(i.x, i.y));
+  };
+  for (int r = 0; r + 1 < grid.rows; ++r)
     for (int c = 0; c + 1 < columns; ++c) {
-      const int corner = r * columns + c;
-      add_unless_flat(corner, corner + 1, corner + columns + 1);
-      add_unless_flat(corner, corner + columns + 1, corner + columns);
+      if (wanted && !wanted(c, r)) continue;
+      add_unless_flat({c, r}, {c + 1, r}, {c + 1, r + 1});
+      add_unless_flat({c, r}, {c + 1, r + 1}, {c, r + 1});
     }
 }
 

@@ -45,8 +45,8 @@ class MeshBuilder {
   void box(const glm::vec3& low, const glm::vec3& high);
 
   /// A smooth surface; triangles without area (where a row shrinks to a point) are left out.
-  /// Only the rows `first_row`..`last_row` are added (-1: to the end), with the normals of the whole.
-  void grid(const Grid& grid, int first_row = 0, int last_row = -1);
+  /// With `wanted`, only the quads for which it is true are added, with the normals of the whole surface.
+  void grid(const Grid& grid, const std::function<bool(int column, int row)>& wanted = {});
 
   /// Adds the triangles of `other`, placed by the affine `matrix`. A mirroring matrix keeps outsides outside.
   void append(const MeshBuilder& other, const glm::mat4& matrix = glm::mat4(1.0f));
