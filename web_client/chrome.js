@@ -1,7 +1,7 @@
 // The frame round the picture: title and status, the switch of light shown, the tools, the panel's door, the help.
 import { scene_title } from "./session_model.js";
 
-const kPhone = "(max-width: 720px)";
+const kPhone = "(max-width: 720px), (max-height: 480px)";
 const kPanelKey = "lightwell.panel";
 const kConnecting = { connecting: "Connecting", waiting: "Waiting for the server", stopped: "Not connected" };
 

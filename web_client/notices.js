@@ -1,5 +1,5 @@
 // Words to the user that come and go: the banner while there is no connection, and short notes.
-import { make } from "./controls.js";
+import { make, make_icon } from "./controls.js";
 
 const kNoteMs = 3500;
 const kTroubleMs = 12000;
@@ -8,7 +8,7 @@ const kTroubleMs = 12000;
 export function show_note(text, kind = "good") {
   const note = make("div", { class: `toast is-${kind}` }, make("span", { textContent: text }));
   const timer = setTimeout(() => note.remove(), kind === "trouble" ? kTroubleMs : kNoteMs);
-  const close = make("button", { type: "button", class: "icon-button", ariaLabel: "Dismiss", textContent: "×" });
+  const close = make("button", { type: "button", class: "icon-button", ariaLabel: "Dismiss" }, make_icon("close"));
   close.addEventListener("click", () => {
     clearTimeout(timer);
     note.remove();

@@ -40,7 +40,7 @@ export class Stats {
 
   build(section) {
     const figure = (words) => make("span", {}, make("b"), ` ${words}`);
-    this.headline = make("p", { class: "figures" }, figure("frames a second"), figure("ms to picture"));
+    this.headline = make("p", { class: "figures" }, figure("fps"), figure("ms to picture"));
     this.bar = make("div", { class: "parts-bar" }, ...kParts.map(([part]) => make("i", { class: `part is-${part}` })));
     this.legend = make("ul", { class: "legend" }, ...kParts.map(([part, label]) =>
       make("li", { class: `is-${part}` }, make("span", { textContent: label }), make("output"))));
