@@ -1,0 +1,27 @@
+#include "server/command_line/scene_argument.h"
+
+#include <cstdio>
+#include <string_view>
+
+#include "renderer/scene/builtin.h"
+#include "renderer/scene/gltf/load_gltf.h"
+
+namespace lightwell {
+
+namespace {
+constexpr std::string_view kBuiltinPrefix = "builtin:";
+}
+
+Result<Scene> load_scene_argument(const std::string& name) {
+  const bool is_builtin = name.starts_with(kBuiltinPrefix);
+  Result<Scene> scene =
+      is_builtin ? builtin_scene(std::string_view(name).substr(kBuiltinPrefix.size())) : load_gltf(name);
+  if (!scene) return scene;
+  for (const std::string& warning : scene->warnings)
+    std::fprintf(stderr, "lightwell: %s: warning: %s\n", name.c_str(), warning.c_str());
+  if (add_default_light(*scene))
+    std::fprintf(stderr, "lightwell: %s brings no light; a soft sky and a sun were added\n", name.c_str());
+  return scene;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,61 @@
+#include "server/command_line/serve_command.h"
+
+#include <limits>
+
+#include "server/command_line/add_option.h"
+#include "server/command_line/settings_options.h"
+
+namespace lightwell {
+
+namespace {
+
+constexpr long long kAnyInt = std::numeric_limits<int>::max();
+
+// In MiB on the command line, in bytes inside.
+void add_mebibytes(CLI::App& app, const std::string& name, std::uint64_t& target_bytes, const std::string& help) {
+  const auto parse = [](const std::string& text) -> Result<std::uint64_t> {
+    const Result<long long> mebibytes = parse_integer(text, 1, 1 << 20);
+    if (!mebibytes) return mebibytes.error();
+    return static_cast<std::uint64_t>(*mebibytes) << 20;
+  };
+  add_parsed(app, name, target_bytes, parse, "MIB", help, std::to_string(target_bytes >> 20));
+}
+
+void add_limit_options(CLI::App& app, ServeLimits& limits) {
+  add_integer(app, "--max-size", limits.max_size_px, 16, kMaxPictureSide, "A picture's longer side in pixels");
+  add_integer(app, "--max-samples", limits.max_samples, 1, 4096, "Directions per pixel of the indirect map");
+  add_integer(app, "--max-spp-frames", limits.max_spp_frames, 1, kAnyInt, "Accumulated frames of one render request");
+  add_mebibytes(app, "--max-upload", limits.max_upload_bytes, "One uploaded scene");
+  add_mebibytes(app, "--max-upload-total", limits.max_scene_bytes, "All uploaded scenes together");
+  add_integer(app, "--max-scenes", limits.max_scenes, 0, kAnyInt, "Uploaded scenes");
+  add_integer(app, "--max-sessions", limits.max_sessions, 1, kAnyInt, "Sessions at a time");
+  add_integer(app, "--max-connections", limits.max_connections, 1, kAnyInt, "Connections at a time");
+  add_integer(app, "--max-viewers", limits.max_viewers_per_session, 1, kAnyInt, "Viewers of one session");
+  add_parsed(
+      app, "--session-idle", limits.session_idle_s,
+      [](const std::string& text) { return parse_number(text, 1.0, 1e9); }, "SECONDS",
+      "A session without viewers and requests ends after this", "600");
+}
+
+}  // namespace
+
+void add_serve_options(CLI::App& app, ServeOptions& options) {
+  app.add_option("SCENE", options.scene, "A .glb or .gltf file, or builtin:NAME")->capture_default_str();
+  app.option_defaults()->group("Network");
+  app.add_option("--host", options.host, "The address to listen on")->capture_default_str();
+  add_integer(app, "--port", options.port, 0, 65535, "The port to listen on; 0: any free one");
+  app.add_option("--base-path", options.base_path, "The prefix that a proxy forwards")->type_name("/PATH");
+  app.add_option("--allow-origin", options.allowed_origins, "A page from elsewhere that may open streams; repeatable")
+      ->type_name("ORIGIN")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--web-client", options.web_client_dir, "Serve the viewer from this folder, not from the binary")
+      ->check(CLI::ExistingDirectory);
+  add_integer(app, "--quality", options.quality, 1, 100, "JPEG quality while the picture moves");
+  add_device_options(app, options.device, options.tracer);
+  add_settings_options(app, options.settings);
+  app.option_defaults()->group("Limits");
+  add_limit_options(app, options.limits);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,13 @@
+// `lightwell serve`: the server's options.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "server/command_line/exit_code.h"
+#include "server/serve.h"
+
+namespace lightwell {
+
+void add_serve_options(CLI::App& app, ServeOptions& options);
+
+}  // namespace lightwell

@@ -1,0 +1,82 @@
+#include "server/command_line/settings_options.h"
+
+#include <limits>
+
+#include "server/command_line/add_option.h"
+
+namespace lightwell {
+
+namespace {
+
+Result<int> parse_shadow_filter(const std::string& text) {
+  const Result<long long> width = parse_integer(text, 1, 15);
+  if (!width || *width % 2 == 0) return invalid_input("", "expected an odd integer from 1 to 15, not \"" + text + "\"");
+  return static_cast<int>(*width);
+}
+
+Result<std::optional<float>> parse_exposure(const std::string& text) {
+  if (text == "auto") return std::optional<float>();
+  const Result<double> stops = parse_number(text, -64.0, 64.0);
+  if (!stops) return invalid_input("", "expected stops from -64 to 64 or auto, not \"" + text + "\"");
+  return std::optional<float>(static_cast<float>(*stops));
+}
+
+Result<std::string> parse_tracer(const std::string& text) {
+  if (text == "embree" || text == "compute") return text;
+  return invalid_input("", "expected embree or compute, not \"" + text + "\"");
+}
+
+void add_transport_options(CLI::App& app, Settings& settings) {
+  add_named(app, "--method", settings.method, {Method::kThesis, Method::kRealtime, Method::kReference},
+            method_from_name, "How light is found");
+  add_integer(app, "--samples", settings.samples, 1, 4096, "Directions per pixel of the indirect map");
+  add_integer(app, "--bounces", settings.bounces, 0, 64, "0: direct light only, 1: the first bounce, ...");
+  add_integer(app, "--indirect-size", settings.indirect_size, 8, 4096,
+              "The longer side of the map in which indirect light is found, in pixels");
+  add_named(app, "--estimator", settings.estimator, {Estimator::kCorrected, Estimator::kLiteral}, estimator_from_name,
+            "The thesis' sum over directions: unbiased, or to the letter");
+  add_integer(app, "--shadow-size", settings.shadow_size, 64, 4096, "A shadow map's side in pixels");
+  add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
+             "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));
+  app.add_flag("--denoise", settings.denoise, "Smooth the indirect light within surfaces");
+  add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
+              "Start of the random sequence: the same seed gives the same picture");
+}
+
+void add_display_options(CLI::App& app, Settings& settings) {
+  add_named(app, "--view", settings.view,
+            {ViewKind::kFinal, ViewKind::kDirect, ViewKind::kIndirect, ViewKind::kAlbedo, ViewKind::kNormal,
+             ViewKind::kDepth, ViewKind::kOcclusionDistance},
+            view_kind_from_name, "What the picture shows");
+  add_parsed(app, "--exposure", settings.exposure_ev, parse_exposure, "EV",
+             "Exposure in stops: light is scaled by 2^EV; auto follows the median luminance", "auto");
+  add_named(app, "--tone-map", settings.tone_map, {ToneMap::kNeutral, ToneMap::kLinear}, tone_map_from_name,
+            "The curve from light to display");
+  add_parsed(
+      app, "--background", settings.background,
+      [](const std::string& text) -> Result<std::optional<glm::vec3>> {
+        const Result<glm::vec3> color = parse_color(text);
+        if (!color) return color.error();
+        return std::optional<glm::vec3>(*color);
+      },
+      "R,G,B", "Light behind everything the camera sees, linear, in nit; without it the scene's environment");
+}
+
+}  // namespace
+
+void add_settings_options(CLI::App& app, Settings& settings) {
+  app.option_defaults()->group("Light");
+  add_transport_options(app, settings);
+  app.option_defaults()->group("Display");
+  add_display_options(app, settings);
+}
+
+void add_device_options(CLI::App& app, std::string& device, std::string& tracer) {
+  app.option_defaults()->group("Device");
+  add_parsed(app, "--device", device, parse_device, "INDEX|software",
+             "The EGL device (see `lightwell devices`); without it the first GPU, else the software device");
+  add_parsed(app, "--tracer", tracer, parse_tracer, "embree|compute",
+             "Who traces rays; without it what suits the device");
+}
+
+}  // namespace lightwell
