@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/check.h"
+#include "renderer/gl/buffer.h"
 
 namespace lightwell::gl {
 
@@ -54,6 +55,15 @@ void Texture::bind_image(GLuint unit, GLenum access) const {
 }
 
 void Texture::clear(const glm::vec4& value) const { glClearTexImage(id_, 0, GL_RGBA, GL_FLOAT, &value[0]); }
+
+BufferTexture::BufferTexture(std::string label, GLenum format) : format_(format) {
+  glCreateTextures(GL_TEXTURE_BUFFER, 1, &id_);
+  glObjectLabel(GL_TEXTURE, id_, -1, label.c_str());
+}
+
+BufferTexture::~BufferTexture() { glDeleteTextures(1, &id_); }
+
+void BufferTexture::attach(const Buffer& buffer) const { glTextureBuffer(id_, format_, buffer.id()); }
 
 Framebuffer::Framebuffer(std::string label, std::initializer_list<const Texture*> colors, const Texture* depth,
                          int layer) {

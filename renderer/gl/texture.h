@@ -48,6 +48,26 @@ class Texture {
   bool array_ = false;
 };
 
+class Buffer;
+
+/// A buffer read as a one-dimensional array of texels.
+class BufferTexture {
+ public:
+  /// `format`: GL_RGBA32UI, ...
+  BufferTexture(std::string label, GLenum format);
+  ~BufferTexture();
+  BufferTexture(const BufferTexture&) = delete;
+  BufferTexture& operator=(const BufferTexture&) = delete;
+
+  /// Reads from `buffer` as it is now; again after the buffer was reallocated.
+  void attach(const Buffer& buffer) const;
+  void bind(GLuint unit) const { glBindTextureUnit(unit, id_); }
+
+ private:
+  GLuint id_ = 0;
+  GLenum format_;
+};
+
 /// A framebuffer over textures that outlive it.
 class Framebuffer {
  public:

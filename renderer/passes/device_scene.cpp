@@ -15,12 +15,14 @@ namespace {
 
 constexpr std::size_t kKeptScenes = 8;
 
-void check_storage_size(std::uint64_t bytes, const char* what) {
-  GLint64 limit_bytes = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limit_bytes);
-  if (bytes > static_cast<std::uint64_t>(limit_bytes))
+constexpr std::uint64_t kTexelBytes = 16;
+
+void check_texels(std::uint64_t bytes, const char* what) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+  if (bytes / kTexelBytes > static_cast<std::uint64_t>(limit))
     throw std::runtime_error("the scene's " + std::string(what) + " take " + std::to_string(bytes >> 20) +
-                             " MiB; the device allows " + std::to_string(limit_bytes >> 20));
+                             " MiB; the device allows " + std::to_string((std::uint64_t(limit) * kTexelBytes) >> 20));
 }
 
 }  // namespace
@@ -34,14 +36,16 @@ DeviceGeometry::DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> pri
     vertices += primitive->positions.size();
     indices += primitive->indices.size();
   }
-  check_storage_size(vertices * sizeof(DeviceVertex), "vertices");
-  check_storage_size(indices * sizeof(std::uint32_t), "indices");
+  check_texels(vertices * sizeof(DeviceVertex), "vertices");
+  check_texels(indices / 3 * sizeof(DeviceTriangle), "triangles");
   rigid_vertices_ = static_cast<std::uint32_t>(vertices);
+  rigid_triangles_ = static_cast<std::uint32_t>(indices / 3);
   indices_ = gl::Buffer("indices", indices * sizeof(std::uint32_t));
   for (std::size_t i = 0; i < primitives_.size(); ++i)
     indices_.upload(std::span<const std::uint32_t>(primitives_[i]->indices), first_index_[i] * sizeof(std::uint32_t));
   positions_ = gl::Buffer("positions", vertices * sizeof(glm::vec3));
   vertices_ = gl::Buffer("vertices", vertices * sizeof(DeviceVertex));
+  triangles_ = gl::Buffer("triangles", indices / 3 * sizeof(DeviceTriangle));
   upload_rigid();
 }
 
@@ -50,32 +54,40 @@ void DeviceGeometry::upload_rigid() {
     positions_.upload(std::span<const glm::vec3>(primitives_[i]->positions), first_vertex_[i] * sizeof(glm::vec3));
     const std::vector<DeviceVertex> packed = pack_vertices(*primitives_[i], nullptr);
     vertices_.upload(std::span<const DeviceVertex>(packed), first_vertex_[i] * sizeof(DeviceVertex));
+    const std::vector<DeviceTriangle> triangles = pack_triangles(*primitives_[i], nullptr);
+    triangles_.upload(std::span<const DeviceTriangle>(triangles), first_index_[i] / 3 * sizeof(DeviceTriangle));
   }
 }
 
-void DeviceGeometry::reserve_deformed(std::uint32_t deformed_vertices) {
-  const std::uint64_t vertices = std::uint64_t{rigid_vertices_} + deformed_vertices;
-  check_storage_size(vertices * sizeof(DeviceVertex), "deformed vertices");
-  const bool moved = positions_.reserve(vertices * sizeof(glm::vec3));
-  const bool moved_too = vertices_.reserve(vertices * sizeof(DeviceVertex));
-  if (moved || moved_too) upload_rigid();
+void DeviceGeometry::reserve_deformed(std::uint32_t vertices, std::uint32_t triangles) {
+  const std::uint64_t all_vertices = std::uint64_t{rigid_vertices_} + vertices;
+  const std::uint64_t all_triangles = std::uint64_t{rigid_triangles_} + triangles;
+  check_texels(all_vertices * sizeof(DeviceVertex), "deformed vertices");
+  check_texels(all_triangles * sizeof(DeviceTriangle), "deformed triangles");
+  const bool moved[] = {positions_.reserve(all_vertices * sizeof(glm::vec3)),
+                        vertices_.reserve(all_vertices * sizeof(DeviceVertex)),
+                        triangles_.reserve(all_triangles * sizeof(DeviceTriangle))};
+  if (moved[0] || moved[1] || moved[2]) upload_rigid();
 }
 
 void DeviceGeometry::upload_deformed(const Primitive& primitive, const DeformedVertices& deformed,
-                                     std::uint32_t first_vertex) {
+                                     std::uint32_t first_vertex, std::uint32_t first_triangle) {
   positions_.upload(std::span<const glm::vec3>(deformed.positions), first_vertex * sizeof(glm::vec3));
   const std::vector<DeviceVertex> packed = pack_vertices(primitive, &deformed);
   vertices_.upload(std::span<const DeviceVertex>(packed), first_vertex * sizeof(DeviceVertex));
-}
-
-void DeviceGeometry::bind() const {
-  positions_.bind_storage(BINDING_POSITIONS);
-  vertices_.bind_storage(BINDING_VERTICES);
-  indices_.bind_storage(BINDING_INDICES);
+  const std::vector<DeviceTriangle> triangles = pack_triangles(primitive, &deformed);
+  triangles_.upload(std::span<const DeviceTriangle>(triangles), first_triangle * sizeof(DeviceTriangle));
 }
 
 DeviceScene::DeviceScene()
-    : instances_("instances", 0), materials_("materials", 0), draw_commands_("draws", 0), instance_numbers_("ids", 0) {
+    : instances_("instances", 0),
+      materials_("materials", 0),
+      draw_commands_("draws", 0),
+      instance_numbers_("instance numbers", 0),
+      vertex_texels_("vertices", GL_RGBA32UI),
+      triangle_texels_("triangles", GL_RGBA32UI),
+      instance_texels_("instances", GL_RGBA32UI),
+      material_texels_("materials", GL_RGBA32UI) {
   glCreateVertexArrays(1, &vertex_array_);
 }
 
@@ -86,7 +98,15 @@ void DeviceScene::prepare(const Scene& scene, const Pose& pose) {
   use_textures(scene);
   upload_materials(scene);
   upload_instances(scene, pose);
+  attach_buffers();
   set_vertex_array();
+}
+
+void DeviceScene::attach_buffers() {
+  vertex_texels_.attach(geometries_.front()->vertices());
+  triangle_texels_.attach(geometries_.front()->triangles());
+  instance_texels_.attach(instances_);
+  material_texels_.attach(materials_);
 }
 
 // The first of the list becomes the geometry of just the primitives in the pose.
@@ -132,10 +152,13 @@ void DeviceScene::upload_materials(const Scene& scene) {
 
 void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
   DeviceGeometry& geometry = *geometries_.front();
-  std::uint32_t deformed_vertices = 0;
-  for (const Instance& instance : pose.instances)
-    if (instance.deformed) deformed_vertices += static_cast<std::uint32_t>(instance.deformed->positions.size());
-  if (deformed_vertices > 0) geometry.reserve_deformed(deformed_vertices);
+  std::uint32_t deformed_vertices = 0, deformed_triangles = 0;
+  for (const Instance& instance : pose.instances) {
+    if (!instance.deformed) continue;
+    deformed_vertices += static_cast<std::uint32_t>(instance.deformed->positions.size());
+    deformed_triangles += static_cast<std::uint32_t>(instance.primitive->indices.size() / 3);
+  }
+  if (deformed_vertices > 0) geometry.reserve_deformed(deformed_vertices, deformed_triangles);
 
   struct DrawCommand {
     std::uint32_t count, instance_count, first_index;
@@ -145,7 +168,7 @@ void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
   std::vector<DrawCommand> commands[3];
   std::vector<DeviceInstance> packed;
   packed.reserve(pose.instances.size());
-  std::uint32_t next_deformed = geometry.rigid_vertices();
+  std::uint32_t next_vertex = geometry.rigid_vertices(), next_triangle = geometry.rigid_triangles();
   triangles_ = 0;
   for (const Instance& instance : pose.instances) {
     const auto& known = geometry.primitives();
@@ -154,20 +177,22 @@ void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
     const std::uint32_t material =
         instance.material >= 0 ? static_cast<std::uint32_t>(instance.material)
                                : static_cast<std::uint32_t>(scene.materials.size());
+    const auto count = static_cast<std::uint32_t>(instance.primitive->indices.size());
     std::uint32_t first_vertex = geometry.first_vertex(primitive);
+    std::uint32_t first_triangle = geometry.first_index(primitive) / 3;
     if (instance.deformed) {
-      first_vertex = next_deformed;
-      geometry.upload_deformed(*instance.primitive, *instance.deformed, first_vertex);
-      next_deformed += static_cast<std::uint32_t>(instance.deformed->positions.size());
+      first_vertex = next_vertex;
+      first_triangle = next_triangle;
+      geometry.upload_deformed(*instance.primitive, *instance.deformed, first_vertex, first_triangle);
+      next_vertex += static_cast<std::uint32_t>(instance.deformed->positions.size());
+      next_triangle += count / 3;
     }
-    packed.push_back(
-        pack_instance(instance.world_from_object, geometry.first_index(primitive), first_vertex, material));
+    packed.push_back(pack_instance(instance.world_from_object, first_vertex, first_triangle, material));
     const bool double_sided = instance.material >= 0 && scene.materials[material].double_sided;
     const bool mirrored = (packed.back().flags & kDeviceInstanceMirrored) != 0;
     const DrawGroup group = double_sided ? DrawGroup::kDoubleSided
                             : mirrored   ? DrawGroup::kCulledMirrored
                                          : DrawGroup::kCulled;
-    const auto count = static_cast<std::uint32_t>(instance.primitive->indices.size());
     commands[static_cast<std::size_t>(group)].push_back({count, 1, geometry.first_index(primitive),
                                                          static_cast<std::int32_t>(first_vertex),
                                                          static_cast<std::uint32_t>(packed.size() - 1)});
@@ -194,11 +219,11 @@ void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
 void DeviceScene::set_vertex_array() {
   const DeviceGeometry& geometry = *geometries_.front();
   const GLuint array = vertex_array_;
-  glVertexArrayVertexBuffer(array, 0, geometry.positions(), 0, sizeof(glm::vec3));
-  glVertexArrayVertexBuffer(array, 1, geometry.vertices(), 0, sizeof(DeviceVertex));
+  glVertexArrayVertexBuffer(array, 0, geometry.positions().id(), 0, sizeof(glm::vec3));
+  glVertexArrayVertexBuffer(array, 1, geometry.vertices().id(), 0, sizeof(DeviceVertex));
   glVertexArrayVertexBuffer(array, 2, instance_numbers_.id(), 0, sizeof(std::uint32_t));
   glVertexArrayBindingDivisor(array, 2, 1);
-  glVertexArrayElementBuffer(array, geometry.indices());
+  glVertexArrayElementBuffer(array, geometry.indices().id());
   const auto enable = [array](GLuint attribute, GLuint binding) {
     glEnableVertexArrayAttrib(array, attribute);
     glVertexArrayAttribBinding(array, attribute, binding);
@@ -214,10 +239,11 @@ void DeviceScene::set_vertex_array() {
 }
 
 void DeviceScene::bind() const {
-  geometries_.front()->bind();
   textures_.front()->bind();
-  instances_.bind_storage(BINDING_INSTANCES);
-  materials_.bind_storage(BINDING_MATERIALS);
+  vertex_texels_.bind(UNIT_VERTICES);
+  triangle_texels_.bind(UNIT_TRIANGLES);
+  instance_texels_.bind(UNIT_INSTANCES);
+  material_texels_.bind(UNIT_MATERIALS);
 }
 
 void DeviceScene::draw_group(DrawGroup group) const {

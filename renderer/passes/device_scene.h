@@ -17,25 +17,27 @@ class DeviceGeometry {
   DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives);
   const std::vector<std::shared_ptr<const Primitive>>& primitives() const { return primitives_; }
 
-  /// Makes room for `deformed_vertices` after the rigid ones.
-  void reserve_deformed(std::uint32_t deformed_vertices);
-  /// Writes an instance's deformed vertices at `first_vertex`; what does not deform is copied from the primitive.
-  void upload_deformed(const Primitive& primitive, const DeformedVertices& deformed, std::uint32_t first_vertex);
+  /// Makes room for this many after the rigid ones.
+  void reserve_deformed(std::uint32_t vertices, std::uint32_t triangles);
+  /// Writes an instance's deformed vertices and triangles; what does not deform is taken from the primitive.
+  void upload_deformed(const Primitive& primitive, const DeformedVertices& deformed, std::uint32_t first_vertex,
+                       std::uint32_t first_triangle);
 
   std::uint32_t first_vertex(std::size_t primitive) const { return first_vertex_[primitive]; }
   std::uint32_t first_index(std::size_t primitive) const { return first_index_[primitive]; }
   std::uint32_t rigid_vertices() const { return rigid_vertices_; }
-  void bind() const;
-  GLuint positions() const { return positions_.id(); }
-  GLuint vertices() const { return vertices_.id(); }
-  GLuint indices() const { return indices_.id(); }
+  std::uint32_t rigid_triangles() const { return rigid_triangles_; }
+  const gl::Buffer& positions() const { return positions_; }
+  const gl::Buffer& vertices() const { return vertices_; }
+  const gl::Buffer& indices() const { return indices_; }
+  const gl::Buffer& triangles() const { return triangles_; }
 
  private:
   void upload_rigid();
   std::vector<std::shared_ptr<const Primitive>> primitives_;
   std::vector<std::uint32_t> first_vertex_, first_index_;
-  std::uint32_t rigid_vertices_ = 0;
-  gl::Buffer positions_, vertices_, indices_;
+  std::uint32_t rigid_vertices_ = 0, rigid_triangles_ = 0;
+  gl::Buffer positions_, vertices_, indices_, triangles_;
 };
 
 /// Which triangles a draw takes, by the state it needs.
@@ -77,12 +79,14 @@ class DeviceScene {
   void use_textures(const Scene& scene);
   void upload_instances(const Scene& scene, const Pose& pose);
   void upload_materials(const Scene& scene);
+  void attach_buffers();
   void set_vertex_array();
   void draw_group(DrawGroup group) const;
 
   std::list<std::unique_ptr<DeviceGeometry>> geometries_;  // most recently used first
   std::list<std::unique_ptr<SceneTextures>> textures_;
   gl::Buffer instances_, materials_, draw_commands_, instance_numbers_;
+  gl::BufferTexture vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
   GLuint vertex_array_ = 0;
   Draws draws_[3];
   bool has_textures_ = false;

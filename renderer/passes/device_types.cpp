@@ -60,10 +60,32 @@ std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const Deform
   return packed;
 }
 
-DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_index, std::uint32_t first_vertex,
-                             std::uint32_t material) {
+std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive, const DeformedVertices* deformed) {
+  const std::vector<glm::vec3>& positions = deformed ? deformed->positions : primitive.positions;
+  const std::vector<glm::vec3>& normals =
+      deformed && !deformed->normals.empty() ? deformed->normals : primitive.normals;
+  std::vector<DeviceTriangle> packed(primitive.indices.size() / 3);
+  for (std::size_t t = 0; t < packed.size(); ++t) {
+    DeviceTriangle& triangle = packed[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.corners[k] = primitive.indices[3 * t + k];
+      triangle.normals[k] = pack_octahedral(normals[triangle.corners[k]]);
+    }
+    const auto [a, b, c] = triangle.corners;
+    const glm::vec3 area_normal = glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
+    const float area = glm::length(area_normal);
+    triangle.geometric_normal = area > 0.0f ? pack_octahedral(area_normal / area) : triangle.normals[0];
+    if (primitive.uv0.empty() || !(area > 0.0f)) continue;
+    const glm::vec2 u = primitive.uv0[b] - primitive.uv0[a], v = primitive.uv0[c] - primitive.uv0[a];
+    triangle.uv_per_m = std::sqrt(std::abs(u.x * v.y - u.y * v.x) / area);
+  }
+  return packed;
+}
+
+DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_vertex,
+                             std::uint32_t first_triangle, std::uint32_t material) {
   const glm::mat4 rows = glm::transpose(world_from_object);
-  DeviceInstance packed{{rows[0], rows[1], rows[2]}, first_index, first_vertex, material, 0};
+  DeviceInstance packed{{rows[0], rows[1], rows[2]}, first_vertex, first_triangle, material, 0};
   if (glm::determinant(glm::mat3(world_from_object)) < 0.0f) packed.flags |= kDeviceInstanceMirrored;
   return packed;
 }

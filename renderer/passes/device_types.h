@@ -1,4 +1,4 @@
-// The structs of shaders/scene_data.glsl as C++ lays them out (std430), and how scene values are packed into them.
+// The structs of shaders/scene_data.glsl as C++ lays them out, and how scene values are packed into them.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,19 @@ struct DeviceVertex {
 };
 static_assert(sizeof(DeviceVertex) == 32);
 
+/// What a hit needs to know of its triangle; object space.
+struct DeviceTriangle {
+  std::uint32_t normals[3];        // of the corners, octahedral
+  std::uint32_t geometric_normal;  // by the winding
+  std::uint32_t corners[3];        // vertices, relative to the instance's first
+  float uv_per_m;                  // sqrt of the area in uv over the area in space
+};
+static_assert(sizeof(DeviceTriangle) == 32);
+
 struct DeviceInstance {
   glm::vec4 world_from_object[3];  // rows
-  std::uint32_t first_index;
   std::uint32_t first_vertex;
+  std::uint32_t first_triangle;
   std::uint32_t material;
   std::uint32_t flags;
 };
@@ -58,8 +67,9 @@ static_assert(sizeof(DeviceMaterial) == 192);
 
 /// `deformed` replaces positions, normals and tangents where it is not null.
 std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed);
-DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_index, std::uint32_t first_vertex,
-                             std::uint32_t material);
+std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive, const DeformedVertices* deformed);
+DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_vertex,
+                             std::uint32_t first_triangle, std::uint32_t material);
 DeviceMaterial pack_material(const Material& material, const SceneTextures& textures);
 
 }  // namespace lightwell

@@ -12,12 +12,12 @@ DirectionsPass::DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       count_(program_, "direction_count"),
       seed_(program_, "seed") {
   directions_.rays = gl::Buffer("rays", 0, buffers);
-  directions_.pdfs = gl::Buffer("pdfs", 0);
+  directions_.weights = gl::Buffer("direction weights", 0);
 }
 
 void DirectionsPass::resize(std::uint32_t most_rays) {
   directions_.rays.reserve(std::uint64_t{most_rays} * sizeof(Ray));
-  directions_.pdfs.reserve(std::uint64_t{most_rays} * sizeof(float));
+  directions_.weights.reserve(std::uint64_t{most_rays} * 8);
 }
 
 const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, std::uint32_t first,
@@ -27,12 +27,13 @@ const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMap
   directions_.ray_count = grid.pixels() * count;
   g_buffer.bind();
   directions_.rays.bind_storage(BINDING_RAYS);
-  directions_.pdfs.bind_storage(BINDING_PDFS);
+  directions_.weights.bind_storage(BINDING_WEIGHTS);
   grid_.set(grid);
   first_ = first;
   count_ = count;
   seed_ = seed;
-  program_->dispatch(directions_.ray_count);
+  constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp
+  program_->dispatch(grid.pixels() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return directions_;
 }

@@ -12,7 +12,7 @@ namespace lightwell {
 /// Ray j * pixels + pixel is direction first + j of that pixel.
 struct Directions {
   gl::Buffer rays;  // Ray
-  gl::Buffer pdfs;  // float, per steradian; 0: no ray
+  gl::Buffer weights;  // 4 halves: f cos(theta) / pdf, and 1 where there is a ray
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t ray_count = 0;

@@ -18,7 +18,7 @@ GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
 void GBufferPass::resize(glm::ivec2 size_px) {
   if (buffer_.depth && buffer_.size_px() == size_px) return;
   buffer_.surface = gl::Texture("g-buffer surface", GL_RGBA32UI, size_px);
-  buffer_.material = gl::Texture("g-buffer material", GL_R32UI, size_px);
+  buffer_.material = gl::Texture("g-buffer material", GL_RG32UI, size_px);
   buffer_.emission = gl::Texture("g-buffer emission", GL_RGBA16F, size_px);
   buffer_.depth = gl::Texture("g-buffer depth", GL_DEPTH_COMPONENT32F, size_px);
   framebuffer_ =

@@ -16,10 +16,10 @@ in vec4 world_tangent;
 in vec4 texture_uv;
 in vec4 vertex_color_factor;
 #endif
-flat in uint instance_index;
+flat in uint material_index;
 
 layout(location = 0) out uvec4 out_surface;
-layout(location = 1) out uint out_material;
+layout(location = 1) out uvec2 out_material;
 layout(location = 2) out vec4 out_emission;
 
 uniform uint frame_seed;
@@ -28,7 +28,7 @@ uniform uint frame_seed;
 float coverage_threshold() { return unit_interval(hash(uvec3(gl_FragCoord.xy, frame_seed))); }
 
 void main() {
-  const Material material = materials[instances[instance_index].material];
+  const Material material = fetch_material(material_index);
   Attributes at;
   at.normal_ws = normalize(world_normal);
   at.tangent_ws = vec3(0.0);
@@ -61,6 +61,6 @@ void main() {
   const vec3 base_color = unlit ? vec3(0.0) : clamp(surface.base_color.rgb, 0.0, 1.0);
   out_surface = pack_g_surface(surface.normal_ws, geometric_normal, base_color, clamp(surface.metallic, 0.0, 1.0));
   const uint roughness = uint(clamp(surface.roughness, 0.0, 1.0) * 65535.0 + 0.5);
-  out_material = instances[instance_index].material | (roughness << 16);
+  out_material = uvec2(material_index | (roughness << 16), packUnorm2x16(vec2(material.f0_dielectric, material.specular_factor)));
   out_emission = vec4(unlit ? surface.base_color.rgb : surface.emission, unlit ? 1.0 : 0.0);
 }

@@ -10,7 +10,7 @@ namespace lightwell {
 /// Nearest surfaces per pixel; packed as shaders/g_buffer.glsl unpacks it.
 struct GBuffer {
   gl::Texture surface;   // RGBA32UI: normal, geometric normal, base colour, metallic
-  gl::Texture material;  // R32UI: material, roughness
+  gl::Texture material;  // RG32UI: material, roughness, dielectric reflectance
   gl::Texture emission;  // RGBA16F: nit; a = 1 where unlit
   gl::Texture depth;     // 32-bit float, reversed; 0 where there is nothing
 

@@ -18,10 +18,10 @@ out vec4 world_tangent;
 out vec4 texture_uv;
 out vec4 vertex_color_factor;
 #endif
-flat out uint instance_index;
+flat out uint material_index;
 
 void main() {
-  const Instance instance = instances[instance_number];
+  const Instance instance = fetch_instance(instance_number);
   world_position = transform_point(instance, position);
   world_normal = transform_normal(instance, vertex_normal(normal_tangent.x));
 #ifdef HAS_TEXTURES
@@ -31,6 +31,6 @@ void main() {
   texture_uv = uv;
   vertex_color_factor = color;
 #endif
-  instance_index = instance_number;
+  material_index = instance.material;
   gl_Position = camera.clip_from_world * vec4(world_position, 1.0);
 }

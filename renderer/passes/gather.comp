@@ -8,14 +8,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/sampling.glsl"
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
-#include "shaders/scene_data.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/ray.glsl"
 #include "shaders/indirect_map.glsl"
 
-layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = BINDING_PDFS) readonly buffer Pdfs { float pdfs[]; };
+layout(std430, binding = BINDING_WEIGHTS) readonly buffer Weights { uvec2 weights[]; };
 layout(std430, binding = BINDING_HIT_RADIANCE) readonly buffer HitRadiance { uvec2 hit_radiance[]; };
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
@@ -31,23 +29,22 @@ void main() {
   const uint pixel_count = uint(indirect_size_px.x * indirect_size_px.y);
   const uint pixel = uint(map_pixel.y * indirect_size_px.x + map_pixel.x);
   const GBufferPoint point = g_buffer_point(representative_pixel(map_pixel));
-  const mat3 frame = frame_around(point.normal_ws);
-  const vec3 out_direction = point.to_camera_ws * frame;
+  const float cos_out = max(dot(point.normal_ws, point.to_camera_ws), 0.0);
 
   vec3 sum = vec3(0.0);
   vec2 distance_sum = vec2(0.0);
   for (uint j = 0u; j < direction_count; ++j) {
     const uint index = j * pixel_count + pixel;
-    const float pdf = pdfs[index];
+    const uvec2 packed_weight = weights[index];
     const uvec2 packed_radiance = hit_radiance[index];
     const vec3 radiance = vec3(unpackHalf2x16(packed_radiance.x), unpackHalf2x16(packed_radiance.y).x);
-    const vec3 reflectance =
-        brdf_times_cosine(point.brdf, out_direction, rays[index].direction_ws * frame) / max(pdf, 1e-20);
+    const vec2 weight_zw = unpackHalf2x16(packed_weight.y);
     const float t = hits[index].t;
-    sum += pdf > 0.0 ? (literal == 1 ? radiance / max(t * t, 1e-12) : radiance * reflectance) : vec3(0.0);
+    const vec3 literal_weight = vec3(weight_zw.y / max(t * t, 1e-12));
+    sum += radiance * (literal == 1 ? literal_weight : vec3(unpackHalf2x16(packed_weight.x), weight_zw.x));
     distance_sum += t >= 0.0 ? vec2(t, 1.0) : vec2(0.0);
   }
-  const vec3 albedo = max(directional_albedo(point.brdf, max(out_direction.z, 0.0)), vec3(1e-4));
+  const vec3 albedo = max(directional_albedo(point.brdf, cos_out), vec3(1e-4));
   const vec3 demodulated = point.valid ? sum / albedo * (literal == 1 ? 1.0 : 1.0 / float(total_directions)) : vec3(0.0);
   const vec4 before = first_batch == 1 ? vec4(0.0) : imageLoad(indirect_map, map_pixel);
   imageStore(indirect_map, map_pixel, vec4(before.rgb + demodulated, point.valid ? 1.0 : 0.0));

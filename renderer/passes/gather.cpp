@@ -31,8 +31,7 @@ void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const
                      const OcclusionMap& occlusion, const HitRadiance& radiance, std::uint32_t total_directions,
                      bool literal, IndirectMap& map) {
   g_buffer.bind();
-  directions.rays.bind_storage(BINDING_RAYS);
-  directions.pdfs.bind_storage(BINDING_PDFS);
+  directions.weights.bind_storage(BINDING_WEIGHTS);
   occlusion.hits.bind_storage(BINDING_HITS);
   radiance.radiance.bind_storage(BINDING_HIT_RADIANCE);
   map.image.bind_image(0, GL_READ_WRITE);

@@ -38,10 +38,8 @@ vec3 literal_weight(Ray ray, HitPoint point, Brdf brdf) {
 
 vec3 light_of_hit(Ray ray, Hit hit) {
   const HitPoint point = hit_point(ray, hit, hit.t * kFootprintPerMetre);
-  const Material material = materials[point.material];
-  if ((material.flags & kMaterialUnlit) != 0u) return vec3(0.0);
-  const Brdf brdf = make_brdf(clamp(point.surface.base_color.rgb, 0.0, 1.0), clamp(point.surface.metallic, 0.0, 1.0),
-                              point.surface.roughness, material.f0_dielectric, material.specular_factor);
+  if ((point.material_flags & kMaterialUnlit) != 0u) return vec3(0.0);
+  const Brdf brdf = point.brdf;
   vec3 radiance = point.surface.emission + reflected_punctual_light(brdf, point.position_ws, point.surface.normal_ws,
                                                                     point.geometric_normal_ws, -ray.direction_ws);
   if (literal == 1) radiance *= literal_weight(ray, point, brdf);

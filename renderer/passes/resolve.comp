@@ -7,7 +7,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/sampling.glsl"
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
-#include "shaders/scene_data.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/environment.glsl"
 

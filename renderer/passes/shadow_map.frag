@@ -5,7 +5,7 @@
 #include "shaders/scene_data.glsl"
 #ifdef HAS_TEXTURES
 #include "shaders/textures.glsl"
-flat in uint instance_index;
+flat in uint material_index;
 in vec4 texture_uv;
 #endif
 
@@ -17,7 +17,7 @@ layout(location = 0) out vec2 out_moments;
 
 void main() {
 #ifdef HAS_TEXTURES
-  const Material material = materials[instances[instance_index].material];
+  const Material material = fetch_material(material_index);
   if ((material.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u) {
     float alpha = material.base_color.a;
     if (material.base_color_texture.slot != 0u)

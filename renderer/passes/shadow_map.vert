@@ -13,14 +13,15 @@ uniform mat4 light_clip_from_world;
 out vec3 world_position;
 #ifdef HAS_TEXTURES
 out vec4 texture_uv;
-flat out uint instance_index;
+flat out uint material_index;
 #endif
 
 void main() {
-  world_position = transform_point(instances[instance_number], position);
+  const Instance instance = fetch_instance(instance_number);
+  world_position = transform_point(instance, position);
 #ifdef HAS_TEXTURES
   texture_uv = uv;
-  instance_index = instance_number;
+  material_index = instance.material;
 #endif
   gl_Position = light_clip_from_world * vec4(world_position, 1.0);
 }

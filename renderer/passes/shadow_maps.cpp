@@ -11,7 +11,7 @@ namespace lightwell {
 
 namespace {
 
-// std430 mirrors of shaders/lights.glsl.
+// std140 mirrors of shaders/lights.glsl.
 struct DeviceLight {
   glm::vec3 position_ws;
   float inverse_range;
@@ -30,7 +30,8 @@ struct DeviceLightsHeader {
   glm::mat4 shadow_clip_from_world[MAX_SHADOW_LAYERS];
   std::uint32_t light_count;
   float shadow_least_variance;
-  std::uint32_t padding[2];
+  float shadow_cube_scale;
+  std::uint32_t padding;
 };
 
 int layers_of(LightKind kind) { return kind == LightKind::kPoint ? 6 : 1; }
@@ -74,13 +75,27 @@ glm::mat4 directional_clip(const Pose& pose, glm::vec3 direction) {
 }
 
 // A pyramid of the given half angle's tangent; depth grows from 0 at `near`, and is not what is stored.
-glm::mat4 perspective_clip(glm::vec3 position, glm::vec3 direction, float tangent, float near, float far) {
+glm::mat4 perspective_clip(float tangent, float near, float far) {
   glm::mat4 clip(0.0f);
   clip[0][0] = clip[1][1] = 1.0f / tangent;
   clip[2][2] = far / (far - near);
   clip[3][2] = -far * near / (far - near);
   clip[2][3] = 1.0f;
-  return clip * light_from_world(position, direction);
+  return clip;
+}
+
+// The six faces of a cube about `position`, in the order and with the axes of cube_face() in shaders/lights.glsl.
+std::array<glm::mat4, 6> cube_clips(glm::vec3 position, float tangent, float near, float far) {
+  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const glm::vec3 axes[6][3] = {{z, y, x}, {z, y, -x}, {x, z, y}, {x, z, -y}, {x, y, z}, {x, y, -z}};
+  std::array<glm::mat4, 6> clips;
+  for (std::size_t face = 0; face < 6; ++face) {
+    const glm::mat3 rotation = glm::transpose(glm::mat3(axes[face][0], axes[face][1], axes[face][2]));
+    glm::mat4 face_from_world(rotation);
+    face_from_world[3] = glm::vec4(-(rotation * position), 1.0f);
+    clips[face] = perspective_clip(tangent, near, far) * face_from_world;
+  }
+  return clips;
 }
 
 float farthest_corner_m(const Pose& pose, glm::vec3 from) {
@@ -108,7 +123,7 @@ DeviceLight pack_light(const PlacedLight& placed) {
 
 void ShadowMaps::bind() const {
   moments.bind(UNIT_SHADOW_MOMENTS);
-  lights.bind_storage(BINDING_LIGHTS);
+  lights.bind_uniform(BINDING_LIGHTS);
 }
 
 ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
@@ -117,7 +132,7 @@ ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
       filter_program_(shaders.compute("passes/shadow_filter.comp")),
       filter_direction_(filter_program_, "direction"),
       filter_radius_(filter_program_, "radius") {
-  maps_.lights = gl::Buffer("lights", sizeof(DeviceLightsHeader));
+  maps_.lights = gl::Buffer("lights", sizeof(DeviceLightsHeader) + MAX_LIGHTS * sizeof(DeviceLight));
 }
 
 int ShadowMapsPass::layers_for(const Pose& pose) {
@@ -141,11 +156,17 @@ void ShadowMapsPass::resize(int size_px, int filter_px, int layers) {
     framebuffers_.emplace_back("shadow map", std::initializer_list<const gl::Texture*>{&maps_.moments}, &depth_, layer);
 }
 
+// A margin over 90 degrees lets the filter look past the edges of a cube's face.
+float ShadowMapsPass::cube_tangent() const {
+  return 1.0f + 2.0f * static_cast<float>(filter_px_) / static_cast<float>(depth_.size_px().x);
+}
+
 // Fills the light buffer and gives the view of each layer.
 std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose) {
   std::vector<View> views;
   std::vector<DeviceLight> lights;
   for (const PlacedLight& placed : pose.lights) {
+    if (lights.size() == MAX_LIGHTS) break;
     DeviceLight light = pack_light(placed);
     const int layers = layers_of(placed.light.kind);
     if (static_cast<int>(views.size()) + layers <= MAX_SHADOW_LAYERS) {
@@ -158,13 +179,11 @@ std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose)
         views.push_back({directional_clip(pose, placed.direction_ws), glm::vec4(0.0f)});
       } else if (placed.light.kind == LightKind::kSpot) {
         const float tangent = std::tan(std::min(placed.light.outer_cone_angle, 1.5f)) * 1.02f;
-        views.push_back({perspective_clip(at, placed.direction_ws, tangent, near, light.shadow_far_m), position_far});
+        views.push_back({perspective_clip(tangent, near, light.shadow_far_m) * light_from_world(at, placed.direction_ws),
+                         position_far});
       } else {
-        // A margin over 90 degrees lets the filter look past the edges of a face.
-        const float tangent = 1.0f + 2.0f * static_cast<float>(filter_px_) / static_cast<float>(depth_.size_px().x);
-        for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
-                                     glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)})
-          views.push_back({perspective_clip(at, axis, tangent, near, light.shadow_far_m), position_far});
+        for (const glm::mat4& face : cube_clips(at, cube_tangent(), near, light.shadow_far_m))
+          views.push_back({face, position_far});
       }
     }
     lights.push_back(light);
@@ -173,7 +192,7 @@ std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose)
   for (std::size_t i = 0; i < views.size(); ++i) header.shadow_clip_from_world[i] = views[i].clip_from_world;
   header.light_count = static_cast<std::uint32_t>(lights.size());
   header.shadow_least_variance = 1e-7f;
-  maps_.lights.reserve(sizeof header + lights.size() * sizeof(DeviceLight));
+  header.shadow_cube_scale = 1.0f / cube_tangent();
   maps_.lights.upload(std::span<const DeviceLightsHeader>(&header, 1));
   maps_.lights.upload(std::span<const DeviceLight>(lights), sizeof header);
   return views;

@@ -25,7 +25,8 @@ class ShadowMapsPass {
   /// A map's side and its box filter's width in pixels.
   void resize(int size_px, int filter_px, int layers);
 
-  /// Number of layers that `pose`'s lights need; lights beyond MAX_SHADOW_LAYERS cast no shadow.
+  /// Number of layers that `pose`'s lights need; lights beyond MAX_SHADOW_LAYERS cast no shadow,
+  /// those beyond MAX_LIGHTS do not shine.
   static int layers_for(const Pose& pose);
 
   const ShadowMaps& run(const DeviceScene& scene, const Pose& pose);
@@ -43,6 +44,7 @@ class ShadowMapsPass {
     glm::vec4 position_far;  // w 0: directional
   };
   std::vector<View> place_lights(const Pose& pose);
+  float cube_tangent() const;
   void draw(const DeviceScene& scene, const View& view, int layer);
   void filter(int layers);
 

@@ -1,7 +1,7 @@
-// Reading the G-buffer; the C++ side is renderer/passes/g_buffer.h. Needs bindings, packing, brdf, camera, scene_data.
+// Reading the G-buffer; the C++ side is renderer/passes/g_buffer.h. Needs bindings, packing, brdf, camera.
 
 layout(binding = UNIT_G_SURFACE) uniform usampler2D g_surface;    // normal, geometric normal, base colour, metallic
-layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;  // material | roughness unorm16 << 16
+layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;  // material | roughness << 16, f0 and specular factor of the dielectric
 layout(binding = UNIT_G_EMISSION) uniform sampler2D g_emission;   // nit
 layout(binding = UNIT_G_DEPTH) uniform sampler2D g_depth;         // reversed; 0: nothing there
 
@@ -21,7 +21,7 @@ GBufferPoint g_buffer_point(ivec2 pixel) {
   const float depth = texelFetch(g_depth, pixel, 0).r;
   point.valid = depth > 0.0;
   const uvec4 surface = texelFetch(g_surface, pixel, 0);
-  const uint packed_material = texelFetch(g_material, pixel, 0).r;
+  const uvec2 packed_material = texelFetch(g_material, pixel, 0).rg;
   const float safe_depth = point.valid ? depth : 1.0;
   point.view_depth_m = view_depth(safe_depth);
   point.position_ws = position_from_depth(vec2(pixel) + 0.5, safe_depth);
@@ -30,10 +30,10 @@ GBufferPoint g_buffer_point(ivec2 pixel) {
   point.geometric_normal_ws = unit_from_octahedral(unpackSnorm2x16(surface.y));
   const vec2 blue_metallic = unpackUnorm2x16(surface.w);
   const vec3 base_color = vec3(unpackUnorm2x16(surface.z), blue_metallic.x);
-  point.material = packed_material & 0xffffu;
-  const float roughness = float(packed_material >> 16) / 65535.0;
-  point.brdf = make_brdf(base_color, blue_metallic.y, roughness, materials[point.material].f0_dielectric,
-                         materials[point.material].specular_factor);
+  point.material = packed_material.x & 0xffffu;
+  const float roughness = float(packed_material.x >> 16) / 65535.0;
+  const vec2 dielectric = unpackUnorm2x16(packed_material.y);
+  point.brdf = make_brdf(base_color, blue_metallic.y, roughness, dielectric.x, dielectric.y);
   return point;
 }
 

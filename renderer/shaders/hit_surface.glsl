@@ -2,29 +2,22 @@
 
 struct HitPoint {
   Surface surface;
+  Brdf brdf;
   vec3 position_ws;
   vec3 geometric_normal_ws;  // unit, turned towards where the ray came from
-  uint material;
+  uint material_flags;
 };
 
 HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
-  const Instance instance = instances[hit.instance];
-  const Material material = materials[instance.material];
-  const uint first = instance.first_index + 3u * hit.triangle;
-  const uvec3 corner = uvec3(indices[first], indices[first + 1u], indices[first + 2u]) + instance.first_vertex;
+  const Instance instance = fetch_instance(hit.instance);
+  const Material material = fetch_material(instance.material);
   const vec3 weight = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
-
-  const vec3 p0 = vertex_position(corner.x);
-  const vec3 edge1 = transform_vector(instance, vertex_position(corner.y) - p0);
-  const vec3 edge2 = transform_vector(instance, vertex_position(corner.z) - p0);
-  const vec3 area_normal = cross(edge1, edge2);
-  const bool mirrored = (instance.flags & kInstanceMirrored) != 0u;
-  const vec3 outward = normalize(mirrored ? -area_normal : area_normal);
+  const uvec4 normals = triangle_normals(instance, hit.triangle);
+  const vec3 outward = transform_normal(instance, vertex_normal(normals.w));
 
   Attributes at;
-  at.normal_ws = transform_normal(instance, vertex_normal(vertices[corner.x].normal) * weight.x +
-                                                vertex_normal(vertices[corner.y].normal) * weight.y +
-                                                vertex_normal(vertices[corner.z].normal) * weight.z);
+  at.normal_ws = transform_normal(instance, vertex_normal(normals.x) * weight.x + vertex_normal(normals.y) * weight.y +
+                                                vertex_normal(normals.z) * weight.z);
   at.tangent_ws = vec3(0.0);
   at.handedness = 1.0;
   at.uv0 = vec2(0.0);
@@ -32,19 +25,16 @@ HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
   at.color = vec4(1.0);
   float footprint_uv = 0.0;
 #ifdef HAS_TEXTURES
-  at.color = vertex_color(vertices[corner.x].color) * weight.x + vertex_color(vertices[corner.y].color) * weight.y +
-             vertex_color(vertices[corner.z].color) * weight.z;
-  const vec2 uv_x = vertices[corner.x].uv0;
-  const vec2 uv_y = vertices[corner.y].uv0;
-  const vec2 uv_z = vertices[corner.z].uv0;
-  at.uv0 = uv_x * weight.x + uv_y * weight.y + uv_z * weight.z;
-  at.uv1 = vertices[corner.x].uv1 * weight.x + vertices[corner.y].uv1 * weight.y + vertices[corner.z].uv1 * weight.z;
-  const uint packed_tangent = vertices[corner.x].tangent;
-  at.tangent_ws = transform_vector(instance, vertex_normal(packed_tangent));
-  at.handedness = vertex_handedness(packed_tangent) * (mirrored ? -1.0 : 1.0);
-  const vec2 uv1 = uv_y - uv_x;
-  const vec2 uv2 = uv_z - uv_x;
-  footprint_uv = footprint_m * sqrt(abs(uv1.x * uv2.y - uv1.y * uv2.x) / max(length(area_normal), 1e-20));
+  const uvec4 corners = triangle_corners(instance, hit.triangle);
+  const Vertex a = fetch_vertex(corners.x);
+  const Vertex b = fetch_vertex(corners.y);
+  const Vertex c = fetch_vertex(corners.z);
+  at.color = vertex_color(a.color) * weight.x + vertex_color(b.color) * weight.y + vertex_color(c.color) * weight.z;
+  at.uv0 = a.uv0 * weight.x + b.uv0 * weight.y + c.uv0 * weight.z;
+  at.uv1 = a.uv1 * weight.x + b.uv1 * weight.y + c.uv1 * weight.z;
+  at.tangent_ws = transform_vector(instance, vertex_normal(a.tangent));
+  at.handedness = vertex_handedness(a.tangent) * ((instance.flags & kInstanceMirrored) != 0u ? -1.0 : 1.0);
+  footprint_uv = footprint_m * uintBitsToFloat(corners.w);
 #endif
 
   HitPoint point;
@@ -54,6 +44,8 @@ HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
   point.geometric_normal_ws = behind ? -outward : outward;
   if (behind) point.surface.normal_ws = -point.surface.normal_ws;
   point.surface.normal_ws = visible_shading_normal(point.surface.normal_ws, -ray.direction_ws);
-  point.material = instance.material;
+  point.brdf = make_brdf(clamp(point.surface.base_color.rgb, 0.0, 1.0), clamp(point.surface.metallic, 0.0, 1.0),
+                         point.surface.roughness, material.f0_dielectric, material.specular_factor);
+  point.material_flags = material.flags;
   return point;
 }

@@ -13,12 +13,13 @@ struct Light {
   float padding;
 };
 
-layout(std430, binding = BINDING_LIGHTS) readonly buffer Lights {
+layout(std140, binding = BINDING_LIGHTS) uniform Lights {
   mat4 shadow_clip_from_world[MAX_SHADOW_LAYERS];
   uint light_count;
   float shadow_least_variance;
-  uvec2 lights_padding;
-  Light lights[];
+  float shadow_cube_scale;  // 1 / tangent of half a cube face's angle, a little under 1
+  uint lights_padding;
+  Light lights[MAX_LIGHTS];
 };
 
 layout(binding = UNIT_SHADOW_MOMENTS) uniform sampler2DArray shadow_moments;  // mean and mean square of depth
@@ -30,25 +31,31 @@ float chebyshev_upper_bound(vec2 moments, float depth) {
   return distance <= 0.0 ? 1.0 : variance / (variance + distance * distance);
 }
 
-// The face of a cube a direction points at: +X -X +Y -Y +Z -Z.
-int cube_face(vec3 direction) {
+// A cube face: +X -X +Y -Y +Z -Z, and where on it a direction points, in [-1, 1]. The axes are those of
+// ShadowMapsPass's cube views.
+vec3 cube_face(vec3 direction) {
   const vec3 size = abs(direction);
-  if (size.x >= size.y && size.x >= size.z) return direction.x >= 0.0 ? 0 : 1;
-  if (size.y >= size.z) return direction.y >= 0.0 ? 2 : 3;
-  return direction.z >= 0.0 ? 4 : 5;
+  if (size.x >= size.y && size.x >= size.z)
+    return vec3(vec2(direction.z, direction.y) / size.x, direction.x >= 0.0 ? 0.0 : 1.0);
+  if (size.y >= size.z) return vec3(vec2(direction.x, direction.z) / size.y, direction.y >= 0.0 ? 2.0 : 3.0);
+  return vec3(vec2(direction.x, direction.y) / size.z, direction.z >= 0.0 ? 4.0 : 5.0);
 }
 
 // Share of the light that reaches a point, from the shadow map; 1 outside it.
 float light_visibility(Light light, vec3 position_ws) {
-  if (light.first_shadow_layer < 0) return 1.0;
   const vec3 from_light = position_ws - light.position_ws;
-  const int layer = light.first_shadow_layer + (light.kind == 1u ? cube_face(from_light) : 0);
-  const vec4 clip = shadow_clip_from_world[layer] * vec4(position_ws, 1.0);
-  const vec3 ndc = clip.xyz / clip.w;
-  const float depth = light.kind == 0u ? ndc.z : length(from_light) / light.shadow_far_m;
-  if (any(greaterThan(abs(ndc.xy), vec2(1.0))) || clip.w <= 0.0) return 1.0;
-  const vec2 moments = textureLod(shadow_moments, vec3(ndc.xy * 0.5 + 0.5, float(layer)), 0.0).rg;
-  return chebyshev_upper_bound(moments, depth);
+  const vec4 clip = shadow_clip_from_world[max(light.first_shadow_layer, 0)] * vec4(position_ws, 1.0);
+  vec2 ndc = clip.xy / clip.w;
+  float layer = float(light.first_shadow_layer);
+  if (light.kind == 1u) {
+    const vec3 face = cube_face(from_light);
+    ndc = face.xy * shadow_cube_scale;
+    layer += face.z;
+  }
+  const float depth = light.kind == 0u ? clip.z : length(from_light) / light.shadow_far_m;
+  const bool outside = max(abs(ndc.x), abs(ndc.y)) > 1.0 || (light.kind == 2u && clip.w <= 0.0);
+  const vec2 moments = textureLod(shadow_moments, vec3(ndc * 0.5 + 0.5, layer), 0.0).rg;
+  return outside || light.first_shadow_layer < 0 ? 1.0 : chebyshev_upper_bound(moments, depth);
 }
 
 struct LightSample {

@@ -10,8 +10,8 @@ struct Vertex {
 
 struct Instance {
   vec4 world_from_object[3];  // rows
-  uint first_index;
   uint first_vertex;
+  uint first_triangle;  // of triangle_words
   uint material;
   uint flags;
 };
@@ -20,8 +20,7 @@ const uint kInstanceMirrored = 1u;  // the transform's determinant is negative
 struct TextureUse {
   vec4 uv_transform;  // column-major 2x2
   vec2 uv_offset;
-  uint slot;          // see texture_slot() in scene_textures.cpp; 0: none
-  uint padding;
+  uint slot;          // see SceneTextures::slot(); 0: none
 };
 
 struct Material {
@@ -34,25 +33,79 @@ struct Material {
   float specular_factor;
   uint flags;
   float alpha_cutoff;
-  uvec2 padding;
+#ifdef HAS_TEXTURES
   TextureUse base_color_texture;
   TextureUse metallic_roughness_texture;
   TextureUse normal_texture;
   TextureUse emissive_texture;
+#endif
 };
 const uint kMaterialAlphaMask = 1u;
 const uint kMaterialAlphaBlend = 2u;
 const uint kMaterialDoubleSided = 4u;
 const uint kMaterialUnlit = 8u;
 
-layout(std430, binding = BINDING_POSITIONS) readonly buffer Positions { float positions[]; };
-layout(std430, binding = BINDING_VERTICES) readonly buffer Vertices { Vertex vertices[]; };
-layout(std430, binding = BINDING_INDICES) readonly buffer Indices { uint indices[]; };
-layout(std430, binding = BINDING_INSTANCES) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = BINDING_MATERIALS) readonly buffer Materials { Material materials[]; };
+// Buffer textures of 128-bit texels: a hit's data is scattered, and a software device fetches a texel of four words as
+// fast as a single word of a storage buffer.
+layout(binding = UNIT_VERTICES) uniform usamplerBuffer vertex_words;      // 2 texels a vertex
+layout(binding = UNIT_TRIANGLES) uniform usamplerBuffer triangle_words;   // 2 texels a triangle
+layout(binding = UNIT_INSTANCES) uniform usamplerBuffer instance_words;   // 4 texels an instance
+layout(binding = UNIT_MATERIALS) uniform usamplerBuffer material_words;   // 12 texels a material
 
-vec3 vertex_position(uint vertex) {
-  return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
+Vertex fetch_vertex(uint vertex) {
+  const uvec4 a = texelFetch(vertex_words, int(2u * vertex));
+  const uvec4 b = texelFetch(vertex_words, int(2u * vertex + 1u));
+  return Vertex(a.x, a.y, uintBitsToFloat(a.zw), uintBitsToFloat(b.xy), b.zw);
+}
+
+// Object space, octahedral: the normals of the three corners and, in w, the geometric one by the winding.
+uvec4 triangle_normals(Instance instance, uint triangle) {
+  return texelFetch(triangle_words, int(2u * (instance.first_triangle + triangle)));
+}
+
+// The vertices of the three corners and, in w as bits, the width of 1 m in units of the first uv set.
+uvec4 triangle_corners(Instance instance, uint triangle) {
+  const uvec4 words = texelFetch(triangle_words, int(2u * (instance.first_triangle + triangle) + 1u));
+  return uvec4(words.xyz + instance.first_vertex, words.w);
+}
+
+Instance fetch_instance(uint index) {
+  const int first = int(4u * index);
+  const uvec4 rest = texelFetch(instance_words, first + 3);
+  return Instance(vec4[3](uintBitsToFloat(texelFetch(instance_words, first)),
+                          uintBitsToFloat(texelFetch(instance_words, first + 1)),
+                          uintBitsToFloat(texelFetch(instance_words, first + 2))),
+                  rest.x, rest.y, rest.z, rest.w);
+}
+
+TextureUse fetch_texture_use(int texel) {
+  const vec4 uv_transform = uintBitsToFloat(texelFetch(material_words, texel));
+  const uvec4 rest = texelFetch(material_words, texel + 1);
+  return TextureUse(uv_transform, uintBitsToFloat(rest.xy), rest.z);
+}
+
+Material fetch_material(uint index) {
+  const int first = int(12u * index);
+  const uvec4 emission = texelFetch(material_words, first + 1);
+  const vec4 lobes = uintBitsToFloat(texelFetch(material_words, first + 2));
+  const uvec4 rest = texelFetch(material_words, first + 3);
+  Material material;
+  material.base_color = uintBitsToFloat(texelFetch(material_words, first));
+  material.emission = uintBitsToFloat(emission.xyz);
+  material.normal_scale = uintBitsToFloat(emission.w);
+  material.metallic = lobes.x;
+  material.roughness = lobes.y;
+  material.f0_dielectric = lobes.z;
+  material.specular_factor = lobes.w;
+  material.flags = rest.x;
+  material.alpha_cutoff = uintBitsToFloat(rest.y);
+#ifdef HAS_TEXTURES
+  material.base_color_texture = fetch_texture_use(first + 4);
+  material.metallic_roughness_texture = fetch_texture_use(first + 6);
+  material.normal_texture = fetch_texture_use(first + 8);
+  material.emissive_texture = fetch_texture_use(first + 10);
+#endif
+  return material;
 }
 
 vec3 vertex_normal(uint packed_normal) { return unit_from_octahedral(unpackSnorm2x16(packed_normal)); }
