@@ -64,7 +64,7 @@ export class Connection {
     return true;
   }
 
-  /** While paused (nobody looks), silence is expected and the line is not judged by it. */
+  /** While paused (nobody looks) silence is expected, and a stream that ends is not opened again before the pause does. */
   set_paused(is_paused) {
     this.is_paused = is_paused;
     this.heard_ms = performance.now();
@@ -156,6 +156,7 @@ export class Connection {
   }
 
   wait_and_retry(at_least_s = 0) {
+    if (this.is_paused) return this.owner.on_state("waiting", { wait_ms: 0 });  // until someone looks
     const longest = Math.min(kFirstWaitMs * 2 ** this.failures, kLongestWaitMs);
     const wait_ms = Math.max(longest * (0.75 + 0.5 * Math.random()), at_least_s * 1000);
     this.failures += 1;
