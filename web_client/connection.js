@@ -36,6 +36,8 @@ export class Connection {
     this.round_trip_ms = null;
     this.is_open = false;
     this.is_paused = false;
+    this.is_stopped = false;  // gave up; only the user connects again
+    this.connecting = false;
   }
 
   /** Connects, or tries again at once if it was waiting to. */
@@ -43,13 +45,14 @@ export class Connection {
     clearTimeout(this.retry_timer);
     if (this.socket || this.connecting) return;
     this.connecting = true;
+    this.is_stopped = false;
     this.owner.on_state("connecting", {});
     try {
       const is_new = await this.ensure_session();
       this.open_stream(is_new);
     } catch (error) {
       if (error instanceof Problem && error.status < 500 && error.status !== 429) {
-        if (!this.owner.on_refused(error)) return this.owner.on_state("stopped", { reason: error.message });
+        if (!this.owner.on_refused(error)) return this.stop(error.message);
       }
       this.wait_and_retry(error.retry_after_s);
     } finally {
@@ -68,7 +71,7 @@ export class Connection {
   set_paused(is_paused) {
     this.is_paused = is_paused;
     this.heard_ms = performance.now();
-    if (!is_paused && !this.socket) this.connect();
+    if (!is_paused && !this.socket && !this.is_stopped) this.connect();
   }
 
   /** Gives the session back, from a page that is being closed. */
@@ -148,11 +151,16 @@ export class Connection {
     this.round_trip_ms = null;
     const words = this.farewell?.reason || reason;
     if (code === close_code.not_allowed || this.farewell?.reconnect === false) {
-      this.owner.on_state("stopped", { reason: words || "The server ended the session." });
+      this.stop(words || "The server ended the session.");
     } else {
       if (code === close_code.session_ended) this.session = this.resume = null;
       this.wait_and_retry();
     }
+  }
+
+  stop(reason) {
+    this.is_stopped = true;
+    this.owner.on_state("stopped", { reason });
   }
 
   wait_and_retry(at_least_s = 0) {
