@@ -25,10 +25,10 @@ static_assert(sizeof(Ray) == 32);
 
 /// std430 layout, 20 bytes; `struct Hit` in shaders/ray.glsl.
 struct Hit {
-  float t;                  // distance in metres; negative: a miss (the ray sees the environment)
-  std::uint32_t instance;   // in Pose::instances
-  std::uint32_t triangle;   // in Primitive::indices / 3
-  float u, v;               // barycentrics of the second and third vertex
+  float t;                 // distance in metres; negative: a miss (the ray sees the environment)
+  std::uint32_t instance;  // in Pose::instances
+  std::uint32_t triangle;  // in Primitive::indices / 3
+  float u, v;              // barycentrics of the second and third vertex
 };
 static_assert(sizeof(Hit) == 20);
 

@@ -1,0 +1,85 @@
+// The hierarchies of the Embree tracer: one per geometry group, kept over the frames, and the top level over them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "renderer/tracing/coverage.h"
+#include "renderer/tracing/embree/embree_handles.h"
+#include "renderer/tracing/geometry_groups.h"
+
+namespace lightwell {
+
+class EmbreeScene {
+ public:
+  /// `threads` for building; 0: one per core. Throws std::runtime_error if Embree cannot start.
+  explicit EmbreeScene(unsigned threads);
+
+  /// As Tracer::update. Throws std::runtime_error if memory runs out.
+  void update(const TraceScene& scene);
+
+  /// The top level. Rays are traced with an EmbreeContext.
+  RTCScene top_level() const { return top_level_.get(); }
+
+  /// The instance in Pose::instances behind Embree's two numbers.
+  std::uint32_t instance_of(std::uint32_t top_level_id, std::uint32_t geometry_id) const {
+    return first_instances_[top_level_id] + geometry_id;
+  }
+
+  /// Whether the triangle counts at these barycentrics.
+  bool is_covered(std::uint32_t instance, std::uint32_t triangle, float u, float v) const {
+    return lightwell::is_covered(coverage_[instance], *primitives_[instance], instance, triangle, u, v);
+  }
+
+  RTCDevice device() const { return device_.get(); }
+  std::uint64_t memory_bytes() const { return memory_bytes_.load(std::memory_order_relaxed); }
+
+ private:
+  struct BottomLevel {
+    std::vector<std::shared_ptr<const Primitive>> primitives;  // keep the key's addresses and the indices alive
+    EmbreeSceneHandle scene;
+    std::shared_ptr<const DeformedVertices> shape;
+    float built_area_m2 = 0.0f;  // of the bounds when the hierarchy was built
+    std::uint64_t built_in = 0;  // frame of the last build or refit
+    std::uint64_t last_used = 0;
+  };
+  struct Slot {  // one instance in the top level
+    EmbreeGeometry geometry;
+    const BottomLevel* shows = nullptr;
+    std::uint64_t shown_build = 0;
+    glm::mat4 world_from_object{0.0f};
+  };
+
+  void prepare_coverage_tests(const TraceScene& scene, std::vector<bool>& filtered);
+  BottomLevel& bottom_level(const GeometryGroup& group, std::span<const Instance> instances);
+  void build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances);
+  void refit(BottomLevel& level, const GeometryGroup& group);
+  void rebuild_top_level(const std::vector<GeometryGroup>& groups, const std::vector<const BottomLevel*>& levels);
+  bool show(Slot& slot, std::uint32_t id, const BottomLevel& level, const glm::mat4& world_from_object);
+  void drop_unused();
+  void throw_on_error() const;
+
+  std::atomic<std::int64_t> memory_bytes_{0};  // outlives the device, which counts into it
+  EmbreeDevice device_;
+  std::map<GeometryKey, std::unique_ptr<BottomLevel>> bottom_levels_;
+  EmbreeSceneHandle top_level_;
+  std::vector<Slot> slots_;
+  std::uint64_t frame_ = 0;
+
+  AlphaRanges alpha_ranges_;
+  std::vector<std::uint32_t> first_instances_;  // by slot
+  std::vector<CoverageTest> coverage_;          // by instance, as are the following
+  std::vector<const Primitive*> primitives_;
+  std::vector<std::shared_ptr<const Image>> images_;  // keep CoverageTest::image alive
+};
+
+/// What rays carry to the coverage filter. Its first member is what Embree knows.
+struct EmbreeContext {
+  RTCIntersectContext embree;
+  const EmbreeScene* scene;
+};
+
+}  // namespace lightwell
