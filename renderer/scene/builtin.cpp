@@ -17,6 +17,7 @@ constexpr BuiltinScene kScenes[] = {
     {"atrium", builtin::make_atrium},
     {"cornell", builtin::make_cornell},
     {"helicopters", builtin::make_helicopters},
+    {"venus", builtin::make_venus},
 };
 
 bool has_light(const Scene& scene) {

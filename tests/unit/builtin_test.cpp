@@ -97,6 +97,64 @@ TEST(Builtin, CornellIsSmallAndStill) {
   EXPECT_NEAR(pose.bounds_max.y - pose.bounds_min.y, 2.0f, 0.01f);
 }
 
+/// The scenes of the thesis' figure 6.5: scene, light and camera move, and come back.
+class MovingScene : public testing::TestWithParam<std::pair<std::string, std::uint64_t>> {};
+
+INSTANTIATE_TEST_SUITE_P(Thesis, MovingScene,
+                         testing::Values(std::pair{"helicopters", 1522u}, std::pair{"venus", 3284u}),
+                         [](const auto& tested) { return tested.param.first; });
+
+float difference(const glm::mat4& a, const glm::mat4& b) {
+  float largest = 0.0f;
+  for (int c = 0; c < 4; ++c) largest = std::max(largest, glm::length(a[c] - b[c]));
+  return largest;
+}
+
+TEST_P(MovingScene, HasItsTriangles) {
+  EXPECT_EQ(count_triangles(builtin_scene(GetParam().first).value()), GetParam().second);
+}
+
+TEST_P(MovingScene, SceneLightAndCameraMoveAndComeBack) {
+  const Scene scene = builtin_scene(GetParam().first).value();
+  const double duration_s = animation_duration_s(scene);
+  EXPECT_NEAR(duration_s, 12.0, 1e-6);
+  const Pose first = pose_at(scene, 0.0), later = pose_at(scene, 1.0);
+  const Pose before = pose_at(scene, duration_s - 1e-4), again = pose_at(scene, duration_s);
+
+  EXPECT_GT(difference(first.cameras[0].world_from_view, later.cameras[0].world_from_view), 0.05f);
+  EXPECT_LT(difference(first.cameras[0].world_from_view, before.cameras[0].world_from_view), 0.01f);
+  EXPECT_LT(difference(first.cameras[0].world_from_view, again.cameras[0].world_from_view), 1e-4f);
+
+  ASSERT_EQ(first.lights.size(), 2u);
+  for (std::size_t i = 0; i < first.lights.size(); ++i) {
+    EXPECT_GT(glm::distance(first.lights[i].direction_ws, later.lights[i].direction_ws), 0.01f);
+    EXPECT_LT(glm::distance(first.lights[i].direction_ws, before.lights[i].direction_ws), 0.01f);
+    EXPECT_LT(glm::distance(first.lights[i].position_ws, before.lights[i].position_ws), 0.01f);
+  }
+
+  int moving = 0;
+  for (std::size_t i = 0; i < first.instances.size(); ++i) {
+    if (difference(first.instances[i].world_from_object, later.instances[i].world_from_object) > 0.1f) ++moving;
+    EXPECT_LT(difference(first.instances[i].world_from_object, before.instances[i].world_from_object), 0.02f);
+  }
+  EXPECT_GE(moving, 10);  // two helicopters of five parts each
+}
+
+/// From one frame to the next nothing jumps: 1/60 s never moves a helicopter by more than half a metre.
+TEST_P(MovingScene, NothingJumps) {
+  const Scene scene = builtin_scene(GetParam().first).value();
+  Pose before = pose_at(scene, 0.0);
+  for (int frame = 1; frame <= 12 * 60; ++frame) {
+    Pose now = pose_at(scene, frame / 60.0);
+    for (std::size_t i = 0; i < now.instances.size(); ++i)
+      ASSERT_LT(glm::distance(now.instances[i].world_from_object[3], before.instances[i].world_from_object[3]), 0.5f);
+    for (std::size_t i = 0; i < now.lights.size(); ++i)
+      ASSERT_LT(glm::distance(now.lights[i].direction_ws, before.lights[i].direction_ws), 0.05f);
+    ASSERT_LT(difference(now.cameras[0].world_from_view, before.cameras[0].world_from_view), 0.5f);
+    before = std::move(now);
+  }
+}
+
 TEST(DefaultLight, IsAddedOnlyWhereNothingShines) {
   Scene dark;
   EXPECT_TRUE(add_default_light(dark));

@@ -1,4 +1,4 @@
-// A light helicopter of 408 triangles: nose towards +Z, 4.4 m of rotor radius, its origin in the cabin below the mast.
+// A light helicopter of 380 triangles: nose towards +Z, 4.4 m of rotor radius, its origin in the cabin below the mast.
 #pragma once
 
 #include "renderer/scene/builtin/scene_builder.h"

@@ -4,41 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "renderer/scene/tangents.h"
+
 namespace lightwell::builtin {
 namespace {
-
-glm::vec3 any_perpendicular(const glm::vec3& n) {
-  const glm::vec3 axis = std::abs(n.x) < 0.7f ? glm::vec3(1.0f, 0.0f, 0.0f) : glm::vec3(0.0f, 0.0f, 1.0f);
-  return glm::normalize(glm::cross(axis, n));
-}
-
-/// Sums of the triangles' directions of growing u and v at each vertex, made perpendicular to its normal.
-std::vector<glm::vec4> tangents_of(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices) {
-  std::vector<glm::vec3> along_u(vertices.size(), glm::vec3(0.0f)), along_v(along_u);
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const Vertex &a = vertices[indices[i]], &b = vertices[indices[i + 1]], &c = vertices[indices[i + 2]];
-    const glm::vec3 ab = b.position - a.position, ac = c.position - a.position;
-    const glm::vec2 uv_ab = b.uv - a.uv, uv_ac = c.uv - a.uv;
-    const float area_uv = uv_ab.x * uv_ac.y - uv_ac.x * uv_ab.y;
-    if (area_uv == 0.0f) continue;
-    const float side = area_uv < 0.0f ? -1.0f : 1.0f;
-    const glm::vec3 u = side * (ab * uv_ac.y - ac * uv_ab.y), v = side * (ac * uv_ab.x - ab * uv_ac.x);
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      along_u[indices[i + corner]] += u;
-      along_v[indices[i + corner]] += v;
-    }
-  }
-  std::vector<glm::vec4> tangents;
-  tangents.reserve(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const glm::vec3& n = vertices[i].normal;
-    const glm::vec3 projected = along_u[i] - n * glm::dot(n, along_u[i]);
-    const float length = glm::length(projected);
-    const glm::vec3 t = length > 1e-12f ? projected / length : any_perpendicular(n);
-    tangents.emplace_back(t, glm::dot(glm::cross(n, t), along_v[i]) < 0.0f ? -1.0f : 1.0f);
-  }
-  return tangents;
-}
 
 /// Twice the area below which a triangle counts as none, in square metres.
 constexpr float kNoArea = 1e-8f;
@@ -176,20 +145,29 @@ void MeshBuilder::append(const MeshBuilder& other, const glm::mat4& matrix) {
 }
 
 Primitive MeshBuilder::finish(int material) const {
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec2> uvs;
+  for (const Vertex& v : vertices_) {
+    positions.push_back(v.position);
+    normals.push_back(v.normal);
+    uvs.push_back(v.uv);
+  }
+  TangentMesh split = make_tangents(positions, normals, uvs, indices_);
+
   Primitive primitive;
   primitive.material = material;
-  primitive.indices = indices_;
-  for (const Vertex& v : vertices_) {
-    primitive.positions.push_back(v.position);
-    primitive.normals.push_back(v.normal);
-    primitive.uv0.push_back(v.uv);
+  primitive.indices = std::move(split.indices);
+  primitive.tangents = std::move(split.tangents);
+  for (const std::uint32_t source : split.source_vertices) {
+    primitive.positions.push_back(positions[source]);
+    primitive.normals.push_back(normals[source]);
+    primitive.uv0.push_back(uvs[source]);
   }
-  primitive.tangents = tangents_of(vertices_, indices_);
-  if (!vertices_.empty()) {
-    primitive.bounds_min = primitive.bounds_max = vertices_.front().position;
-    for (const Vertex& v : vertices_) {
-      primitive.bounds_min = glm::min(primitive.bounds_min, v.position);
-      primitive.bounds_max = glm::max(primitive.bounds_max, v.position);
+  if (!positions.empty()) {
+    primitive.bounds_min = primitive.bounds_max = positions.front();
+    for (const glm::vec3& p : positions) {
+      primitive.bounds_min = glm::min(primitive.bounds_min, p);
+      primitive.bounds_max = glm::max(primitive.bounds_max, p);
     }
   }
   return primitive;

@@ -54,7 +54,7 @@ class MeshBuilder {
   /// Adds raw vertices and triangles (indices into `vertices`).
   void add(std::span<const Vertex> vertices, std::span<const std::uint32_t> indices);
 
-  /// The finished primitive: unit normals, MikkTSpace-style tangents from uv0, bounds.
+  /// The finished primitive: unit normals, tangents by make_tangents, bounds.
   Primitive finish(int material) const;
 
  private:

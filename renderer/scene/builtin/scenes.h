@@ -14,4 +14,7 @@ Scene make_cornell();
 /// Three helicopters over a landing place between two coloured walls: 1522 triangles; scene, light and camera move.
 Scene make_helicopters();
 
+/// A draped figure among two helicopters: 3284 triangles; scene, light and camera move.
+Scene make_venus();
+
 }  // namespace lightwell::builtin
