@@ -18,12 +18,12 @@ template <class A, class B>
 
 }  // namespace lightwell::detail
 
-#define LIGHTWELL_CHECK_OP(a, op, b)                                                                  \
-  do {                                                                                                \
-    const auto& check_a = (a);                                                                        \
-    const auto& check_b = (b);                                                                        \
-    if (!(check_a op check_b))                                                                        \
-      ::lightwell::detail::check_failed(__FILE__, __LINE__, #a " " #op " " #b, check_a, check_b);     \
+#define LIGHTWELL_CHECK_OP(a, op, b)                                                              \
+  do {                                                                                            \
+    const auto& check_a = (a);                                                                    \
+    const auto& check_b = (b);                                                                    \
+    if (!(check_a op check_b))                                                                    \
+      ::lightwell::detail::check_failed(__FILE__, __LINE__, #a " " #op " " #b, check_a, check_b); \
   } while (false)
 
 #define LIGHTWELL_CHECK(condition) LIGHTWELL_CHECK_OP(static_cast<bool>(condition), ==, true)

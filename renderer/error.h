@@ -9,13 +9,13 @@
 namespace lightwell {
 
 enum class ErrorKind {
-  kInvalidInput,   // what was given is wrong: exit code 3, HTTP 4xx
-  kNotFound,       // a name, file or index that does not exist
-  kTooLarge,       // over a stated limit
-  kUnsupported,    // a required feature that is not implemented
-  kNoDevice,       // no usable OpenGL device: exit code 4
-  kDeviceLost,     // the context failed; the renderer must be rebuilt
-  kInternal,       // anything else: exit code 1
+  kInvalidInput,  // what was given is wrong: exit code 3, HTTP 4xx
+  kNotFound,      // a name, file or index that does not exist
+  kTooLarge,      // over a stated limit
+  kUnsupported,   // a required feature that is not implemented
+  kNoDevice,      // no usable OpenGL device: exit code 4
+  kDeviceLost,    // the context failed; the renderer must be rebuilt
+  kInternal,      // anything else: exit code 1
 };
 
 /// What was wrong, where, and why.

@@ -119,11 +119,17 @@ Renderer::Renderer(const RendererOptions& options) : state_(std::make_unique<Sta
 
 Renderer::~Renderer() = default;
 
-gl::Context& Renderer::context() { return *state_->context; }
+gl::Context& Renderer::context() {
+  return *state_->context;
+}
 
-std::string_view Renderer::tracer_name() const { return state_->tracer->name(); }
+std::string_view Renderer::tracer_name() const {
+  return state_->tracer->name();
+}
 
-std::unique_ptr<RenderView> Renderer::make_view() { return std::make_unique<View>(state_->shaders, state_->buffers); }
+std::unique_ptr<RenderView> Renderer::make_view() {
+  return std::make_unique<View>(state_->shaders, state_->buffers);
+}
 
 Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, RenderView& render_view) {
   if (Status good = check_settings(request.settings, request.size_px); !good) return good.error();
@@ -141,8 +147,9 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     state_->bind_frame(scene, request, pixel_jitter(view.accumulated));
     state_->timer.mark("scene");
 
-    FrameContext context{state_->device_scene, pose,      request.settings, request.size_px, view.accumulated,
-                         request.accumulate,   *state_->tracer, state_->timer};
+    FrameContext context{
+        state_->device_scene, pose,         request.settings, request.size_px, view.accumulated, request.accumulate,
+        *state_->tracer,      state_->timer};
     const Picture& picture = view.thesis.render(context);
     view.display.resize(request.size_px);
     view.display.measure_exposure(picture, view.exposed && view.accumulated == 0 ? kExposureSmoothing : 1.0f);

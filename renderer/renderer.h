@@ -23,7 +23,8 @@ enum class Estimator { kCorrected, kLiteral };
 enum class ViewKind { kFinal, kDirect, kIndirect, kAlbedo, kNormal, kDepth, kOcclusionDistance };
 enum class ToneMap { kNeutral, kLinear };
 
-/// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if unknown.
+/// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if
+/// unknown.
 std::optional<Method> method_from_name(std::string_view name);
 std::optional<Estimator> estimator_from_name(std::string_view name);
 std::optional<ViewKind> view_kind_from_name(std::string_view name);
@@ -36,18 +37,18 @@ std::string_view name_of(ToneMap tone_map);
 /// How a picture is made. Ranges are checked by `check_settings`.
 struct Settings {
   Method method = Method::kThesis;
-  int samples = 32;              // directions per pixel of the indirect map, 1..4096
-  int bounces = 1;               // 0: direct only; 1: first bounce; ... 64
-  int indirect_size = 128;       // the indirect map's longer side in pixels, 8..4096
+  int samples = 32;         // directions per pixel of the indirect map, 1..4096
+  int bounces = 1;          // 0: direct only; 1: first bounce; ... 64
+  int indirect_size = 128;  // the indirect map's longer side in pixels, 8..4096
   Estimator estimator = Estimator::kCorrected;
   ViewKind view = ViewKind::kFinal;
-  std::optional<float> exposure_ev;     // fixed exposure (linear scale 2^ev); none: median luminance, smoothed in time
+  std::optional<float> exposure_ev;  // fixed exposure (linear scale 2^ev); none: median luminance, smoothed in time
   ToneMap tone_map = ToneMap::kNeutral;
   std::uint32_t seed = 0;
   std::optional<glm::vec3> background;  // linear nit behind everything the camera sees; none: the environment
-  int shadow_size = 512;         // a shadow map's side in pixels, 64..4096
-  int shadow_filter = 3;         // its box filter's width in pixels, odd, 1..15
-  bool denoise = false;          // edge-stopping filter over the indirect map (not in the thesis)
+  int shadow_size = 512;                // a shadow map's side in pixels, 64..4096
+  int shadow_filter = 3;                // its box filter's width in pixels, odd, 1..15
+  bool denoise = false;                 // edge-stopping filter over the indirect map (not in the thesis)
 };
 
 /// The first setting out of range, by its name on the command line; Done if all are good.
@@ -59,9 +60,9 @@ struct FrameRequest {
   PlacedCamera camera;
   glm::ivec2 size_px{512, 512};
   Settings settings;
-  bool accumulate = false;    // add to the view's earlier frames of the very same request (scene unchanged): refinement
-  bool want_linear = false;   // Frame::linear_rgb is filled as well: scene-referred, no exposure, no tone curve
-  bool want_display = true;   // Frame::display_rgbx is filled: exposed, tone-mapped, sRGB
+  bool accumulate = false;   // add to the view's earlier frames of the very same request (scene unchanged): refinement
+  bool want_linear = false;  // Frame::linear_rgb is filled as well: scene-referred, no exposure, no tone curve
+  bool want_display = true;  // Frame::display_rgbx is filled: exposed, tone-mapped, sRGB
 };
 
 struct StageTime {

@@ -40,20 +40,36 @@ std::string_view to_name(const Names<Value, N>& names, Value value) {
 
 Status check_range(const char* name, int value, int least, int most) {
   if (value >= least && value <= most) return Done{};
-  return invalid_input(name, std::to_string(value) + " is not within " + std::to_string(least) + " to " +
-                                 std::to_string(most));
+  return invalid_input(
+      name, std::to_string(value) + " is not within " + std::to_string(least) + " to " + std::to_string(most));
 }
 
 }  // namespace
 
-std::optional<Method> method_from_name(std::string_view name) { return from_name(kMethods, name); }
-std::optional<Estimator> estimator_from_name(std::string_view name) { return from_name(kEstimators, name); }
-std::optional<ViewKind> view_kind_from_name(std::string_view name) { return from_name(kViews, name); }
-std::optional<ToneMap> tone_map_from_name(std::string_view name) { return from_name(kToneMaps, name); }
-std::string_view name_of(Method method) { return to_name(kMethods, method); }
-std::string_view name_of(Estimator estimator) { return to_name(kEstimators, estimator); }
-std::string_view name_of(ViewKind view) { return to_name(kViews, view); }
-std::string_view name_of(ToneMap tone_map) { return to_name(kToneMaps, tone_map); }
+std::optional<Method> method_from_name(std::string_view name) {
+  return from_name(kMethods, name);
+}
+std::optional<Estimator> estimator_from_name(std::string_view name) {
+  return from_name(kEstimators, name);
+}
+std::optional<ViewKind> view_kind_from_name(std::string_view name) {
+  return from_name(kViews, name);
+}
+std::optional<ToneMap> tone_map_from_name(std::string_view name) {
+  return from_name(kToneMaps, name);
+}
+std::string_view name_of(Method method) {
+  return to_name(kMethods, method);
+}
+std::string_view name_of(Estimator estimator) {
+  return to_name(kEstimators, estimator);
+}
+std::string_view name_of(ViewKind view) {
+  return to_name(kViews, view);
+}
+std::string_view name_of(ToneMap tone_map) {
+  return to_name(kToneMaps, tone_map);
+}
 
 Status check_settings(const Settings& settings, glm::ivec2 size_px) {
   const Status checks[] = {check_range("width", size_px.x, 1, 16384),

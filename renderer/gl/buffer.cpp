@@ -27,9 +27,13 @@ Buffer::Buffer(std::string label, std::uint64_t size_bytes, BufferUse use)
   }
 }
 
-Buffer::~Buffer() { release(); }
+Buffer::~Buffer() {
+  release();
+}
 
-Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+Buffer::Buffer(Buffer&& other) noexcept {
+  *this = std::move(other);
+}
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
   if (this == &other) return *this;
@@ -66,9 +70,13 @@ void Buffer::clear(std::uint32_t word) {
   glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
-void Buffer::bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_); }
+void Buffer::bind_storage(GLuint binding) const {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+}
 
-void Buffer::bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_); }
+void Buffer::bind_uniform(GLuint binding) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_);
+}
 
 bool Buffer::reserve(std::uint64_t size_bytes) {
   if (id_ != 0 && size_bytes <= size_bytes_) return false;

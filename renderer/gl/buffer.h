@@ -12,8 +12,8 @@ namespace lightwell::gl {
 
 /// Who touches the bytes, which decides where they live.
 enum class BufferUse {
-  kDevice,        // written and read by the device; filled by `upload` at most
-  kHostVisible,   // persistently and coherently mapped as well: `host()` is valid for the buffer's life
+  kDevice,       // written and read by the device; filled by `upload` at most
+  kHostVisible,  // persistently and coherently mapped as well: `host()` is valid for the buffer's life
 };
 
 class Buffer {

@@ -108,9 +108,10 @@ Session open_session(const std::vector<EGLDeviceEXT>& devices, int index) {
     if (!eglChooseConfig(session.display, wanted, &config, 1, &count) || count < 1)
       return fail(egl_error("eglChooseConfig"));
   }
-  std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+  std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION,       4,
+                                    EGL_CONTEXT_MINOR_VERSION,       5,
                                     EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                    EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE};
+                                    EGL_CONTEXT_OPENGL_DEBUG,        EGL_TRUE};
   if (has_word(extensions, "EGL_EXT_create_context_robustness"))
     attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
   attributes.push_back(EGL_NONE);
@@ -241,15 +242,21 @@ Context::~Context() {
   state_->session.close();
 }
 
-const DeviceInfo& Context::device() const { return state_->session.info; }
+const DeviceInfo& Context::device() const {
+  return state_->session.info;
+}
 
-const std::string& Context::why() const { return state_->why; }
+const std::string& Context::why() const {
+  return state_->why;
+}
 
 std::vector<std::string> Context::take_debug_messages() {
   const std::lock_guard lock(state_->log.mutex);
   return std::exchange(state_->log.messages, {});
 }
 
-bool Context::lost() const { return glGetGraphicsResetStatus() != GL_NO_ERROR; }
+bool Context::lost() const {
+  return glGetGraphicsResetStatus() != GL_NO_ERROR;
+}
 
 }  // namespace lightwell::gl

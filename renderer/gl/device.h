@@ -10,13 +10,13 @@ namespace lightwell::gl {
 
 /// One EGL device that was tried.
 struct DeviceInfo {
-  int index = -1;              // of eglQueryDevicesEXT; -1 for Mesa's surfaceless platform, tried last
-  std::string egl_name;        // vendor or extensions as EGL tells them
-  std::string gl_renderer;     // GL_RENDERER, empty if no context could be made
+  int index = -1;           // of eglQueryDevicesEXT; -1 for Mesa's surfaceless platform, tried last
+  std::string egl_name;     // vendor or extensions as EGL tells them
+  std::string gl_renderer;  // GL_RENDERER, empty if no context could be made
   std::string gl_version;
-  bool software = false;       // runs on the CPU
-  bool usable = false;         // an OpenGL 4.5 core context was made
-  std::string reason;          // why it is not usable; empty if it is
+  bool software = false;  // runs on the CPU
+  bool usable = false;    // an OpenGL 4.5 core context was made
+  std::string reason;     // why it is not usable; empty if it is
 };
 
 /// What the operator asked for: "" (choose), "software", or a device's index in decimal.

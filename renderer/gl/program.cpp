@@ -94,7 +94,9 @@ std::string key_of(std::string label, const std::vector<std::string>& defines) {
 
 }  // namespace
 
-Program::~Program() { glDeleteProgram(id_); }
+Program::~Program() {
+  glDeleteProgram(id_);
+}
 
 void Program::dispatch(glm::ivec2 size, glm::ivec2 group) const {
   use();
@@ -135,7 +137,8 @@ ProgramPtr ShaderLibrary::compute(std::string_view path, const std::vector<std::
   ProgramPtr& program = programs_[key_of(label, defines)];
   if (program) return program;
   Expansion source;
-  expand(label, [this](const std::string& file) { return source_of(file); }, source);
+  expand(
+      label, [this](const std::string& file) { return source_of(file); }, source);
   program = std::make_shared<Program>(label, link(label, {compile(GL_COMPUTE_SHADER, source, defines)}));
   return program;
 }
@@ -150,8 +153,8 @@ ProgramPtr ShaderLibrary::raster(std::string_view vertex_path, std::string_view 
   expand(std::string(vertex_path), read, vertex);
   expand(std::string(fragment_path), read, fragment);
   const GLuint vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines);
-  program = std::make_shared<Program>(
-      label, link(label, {vertex_shader, compile(GL_FRAGMENT_SHADER, fragment, defines)}));
+  program =
+      std::make_shared<Program>(label, link(label, {vertex_shader, compile(GL_FRAGMENT_SHADER, fragment, defines)}));
   return program;
 }
 

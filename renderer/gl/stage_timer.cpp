@@ -18,7 +18,9 @@ void add(std::vector<StageTimer::Stage>& stages, std::string_view name, double m
 
 }  // namespace
 
-StageTimer::~StageTimer() { glDeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data()); }
+StageTimer::~StageTimer() {
+  glDeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
+}
 
 GLuint StageTimer::next_query() {
   if (used_queries_ == queries_.size()) {

@@ -37,7 +37,9 @@ Texture::~Texture() {
   if (id_ != 0) glDeleteTextures(1, &id_);
 }
 
-Texture::Texture(Texture&& other) noexcept { *this = std::move(other); }
+Texture::Texture(Texture&& other) noexcept {
+  *this = std::move(other);
+}
 
 Texture& Texture::operator=(Texture&& other) noexcept {
   if (this == &other) return *this;
@@ -54,16 +56,22 @@ void Texture::bind_image(GLuint unit, GLenum access) const {
   glBindImageTexture(unit, id_, 0, GL_TRUE, 0, access, format_);
 }
 
-void Texture::clear(const glm::vec4& value) const { glClearTexImage(id_, 0, GL_RGBA, GL_FLOAT, &value[0]); }
+void Texture::clear(const glm::vec4& value) const {
+  glClearTexImage(id_, 0, GL_RGBA, GL_FLOAT, &value[0]);
+}
 
 BufferTexture::BufferTexture(std::string label, GLenum format) : format_(format) {
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &id_);
   glObjectLabel(GL_TEXTURE, id_, -1, label.c_str());
 }
 
-BufferTexture::~BufferTexture() { glDeleteTextures(1, &id_); }
+BufferTexture::~BufferTexture() {
+  glDeleteTextures(1, &id_);
+}
 
-void BufferTexture::attach(const Buffer& buffer) const { glTextureBuffer(id_, format_, buffer.id()); }
+void BufferTexture::attach(const Buffer& buffer) const {
+  glTextureBuffer(id_, format_, buffer.id());
+}
 
 Framebuffer::Framebuffer(std::string label, std::initializer_list<const Texture*> colors, const Texture* depth,
                          int layer) {
@@ -91,7 +99,9 @@ Framebuffer::~Framebuffer() {
   if (id_ != 0) glDeleteFramebuffers(1, &id_);
 }
 
-Framebuffer::Framebuffer(Framebuffer&& other) noexcept { *this = std::move(other); }
+Framebuffer::Framebuffer(Framebuffer&& other) noexcept {
+  *this = std::move(other);
+}
 
 Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
   if (this == &other) return *this;

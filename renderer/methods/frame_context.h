@@ -17,7 +17,7 @@ struct FrameContext {
   bool accumulate;
   Tracer& tracer;
   gl::StageTimer& timer;
-  std::uint64_t rays = 0;      // traced in this frame, counted by the method
+  std::uint64_t rays = 0;  // traced in this frame, counted by the method
 };
 
 }  // namespace lightwell

@@ -33,13 +33,12 @@ IndirectMapGrid make_grid(const FrameContext& frame) {
 ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : g_buffer_pass_(shaders),
       shadow_maps_pass_(shaders),
-      direct_light_pass_(shaders),
       directions_pass_(shaders, buffers),
       hit_light_pass_(shaders),
       gather_pass_(shaders),
       filter_pass_(shaders),
       add_maps_pass_(shaders),
-      resolve_pass_(shaders) {
+      compose_pass_(shaders) {
   occlusion_.hits = gl::Buffer("hits", 0, buffers);
 }
 
@@ -50,10 +49,8 @@ const Picture& ThesisMethod::render(FrameContext& frame) {
   frame.timer.mark("g-buffer");
   const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose);
   frame.timer.mark("shadow maps");
-  const DirectRadiance& direct = direct_light_pass_.run(g_buffer, shadows);
-  frame.timer.mark("direct light");
   const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
-  const Picture& picture = resolve_pass_.run(g_buffer, direct, indirect, gather_pass_.occlusion_distance(),
+  const Picture& picture = compose_pass_.run(frame.scene, g_buffer, shadows, indirect, gather_pass_.occlusion_distance(),
                                              frame.settings.view, frame.accumulate);
   frame.timer.mark("compose");
   return picture;
@@ -63,8 +60,7 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   g_buffer_pass_.resize(frame.size_px);
   shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
                            ShadowMapsPass::layers_for(frame.pose));
-  direct_light_pass_.resize(frame.size_px);
-  resolve_pass_.resize(frame.size_px);
+  compose_pass_.resize(frame.size_px);
   const std::uint32_t most_rays = grid.pixels() * directions_per_batch(grid, frame.settings.samples);
   directions_pass_.resize(most_rays);
   hit_light_pass_.resize(most_rays);
@@ -77,8 +73,8 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   all_bounces_ = make_indirect_map(grid.map_size_px);
 }
 
-const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuffer& g_buffer,
-                                                const ShadowMaps& shadows, const IndirectMapGrid& grid) {
+const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                                                const IndirectMapGrid& grid) {
   if (frame.settings.bounces == 0) {
     all_bounces_.image.clear(glm::vec4(0.0f));
     return all_bounces_;

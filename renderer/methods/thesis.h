@@ -2,12 +2,11 @@
 #pragma once
 
 #include "renderer/methods/frame_context.h"
-#include "renderer/passes/direct_light.h"
+#include "renderer/passes/compose.h"
 #include "renderer/passes/directions.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/gather.h"
 #include "renderer/passes/hit_light.h"
-#include "renderer/passes/resolve.h"
 #include "renderer/passes/shadow_maps.h"
 
 namespace lightwell {
@@ -29,16 +28,15 @@ class ThesisMethod {
 
   GBufferPass g_buffer_pass_;
   ShadowMapsPass shadow_maps_pass_;
-  DirectLightPass direct_light_pass_;
   DirectionsPass directions_pass_;
   HitLightPass hit_light_pass_;
   GatherPass gather_pass_;
   IndirectFilterPass filter_pass_;
   AddMapsPass add_maps_pass_;
-  ResolvePass resolve_pass_;
+  ComposePass compose_pass_;
   OcclusionMap occlusion_;
   IndirectMap bounce_, previous_bounce_, all_bounces_;
-  std::uint32_t traced_first_ = 0;   // the batch whose hits are in occlusion_
+  std::uint32_t traced_first_ = 0;  // the batch whose hits are in occlusion_
   bool traced_ = false;
 };
 

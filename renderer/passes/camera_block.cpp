@@ -35,8 +35,8 @@ CameraBlock make_camera_block(const PlacedCamera& camera, glm::ivec2 size_px, gl
   const float aspect_ratio = size.x / size.y;
   const Camera& lens = camera.camera;
   const float tangent = std::tan(lens.yfov * 0.5f);
-  const glm::vec2 half_size = lens.perspective ? glm::vec2(tangent * aspect_ratio, tangent)
-                                               : glm::vec2(lens.ymag * aspect_ratio, lens.ymag);
+  const glm::vec2 half_size =
+      lens.perspective ? glm::vec2(tangent * aspect_ratio, tangent) : glm::vec2(lens.ymag * aspect_ratio, lens.ymag);
   const float near = lens.perspective ? std::max(lens.znear, 1e-4f) : lens.znear;
   const float far = lens.perspective ? 0.0f : std::max(lens.zfar, near + 1e-3f);
   const glm::vec2 shift_ndc = 2.0f * jitter_px / size;

@@ -18,8 +18,8 @@ struct CameraBlock {
   glm::ivec4 size_px;
 };
 
-/// `jitter_px` moves the picture by a part of a pixel, for anti-aliasing over frames. Reversed depth, infinite far plane
-/// for perspective cameras; row 0 is the top.
+/// `jitter_px` moves the picture by a part of a pixel, for anti-aliasing over frames. Reversed depth, infinite far
+/// plane for perspective cameras; row 0 is the top.
 CameraBlock make_camera_block(const PlacedCamera& camera, glm::ivec2 size_px, glm::vec2 jitter_px);
 
 }  // namespace lightwell

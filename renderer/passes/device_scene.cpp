@@ -91,7 +91,9 @@ DeviceScene::DeviceScene()
   glCreateVertexArrays(1, &vertex_array_);
 }
 
-DeviceScene::~DeviceScene() { glDeleteVertexArrays(1, &vertex_array_); }
+DeviceScene::~DeviceScene() {
+  glDeleteVertexArrays(1, &vertex_array_);
+}
 
 void DeviceScene::prepare(const Scene& scene, const Pose& pose) {
   use_geometry(pose);
@@ -142,10 +144,11 @@ void DeviceScene::upload_materials(const Scene& scene) {
   packed.push_back(pack_material(Material{}, textures));  // the default material of glTF, last
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
-  has_textures_ = std::any_of(packed.begin(), packed.end(), [](const DeviceMaterial& material) {
+  const auto textured = [](const DeviceMaterial& material) {
     return (material.base_color_texture.slot | material.metallic_roughness_texture.slot |
             material.normal_texture.slot | material.emissive_texture.slot) != 0;
-  });
+  };
+  has_textures_ = scene.environment.image || std::any_of(packed.begin(), packed.end(), textured);
   materials_.reserve(packed.size() * sizeof(DeviceMaterial));
   materials_.upload(std::span<const DeviceMaterial>(packed));
 }
@@ -172,11 +175,10 @@ void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
   triangles_ = 0;
   for (const Instance& instance : pose.instances) {
     const auto& known = geometry.primitives();
-    const auto primitive = static_cast<std::size_t>(
-        std::lower_bound(known.begin(), known.end(), instance.primitive) - known.begin());
-    const std::uint32_t material =
-        instance.material >= 0 ? static_cast<std::uint32_t>(instance.material)
-                               : static_cast<std::uint32_t>(scene.materials.size());
+    const auto primitive =
+        static_cast<std::size_t>(std::lower_bound(known.begin(), known.end(), instance.primitive) - known.begin());
+    const std::uint32_t material = instance.material >= 0 ? static_cast<std::uint32_t>(instance.material)
+                                                          : static_cast<std::uint32_t>(scene.materials.size());
     const auto count = static_cast<std::uint32_t>(instance.primitive->indices.size());
     std::uint32_t first_vertex = geometry.first_vertex(primitive);
     std::uint32_t first_triangle = geometry.first_index(primitive) / 3;

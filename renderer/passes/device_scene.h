@@ -56,7 +56,8 @@ class DeviceScene {
   /// Binds everything that shaders/scene_data.glsl and textures.glsl declare.
   void bind() const;
 
-  /// True if a material has a texture or a mesh vertex colours: shaders need their HAS_TEXTURES variant.
+  /// True if a material has a texture, a mesh vertex colours or the environment an image: shaders need the variant that
+  /// reads them.
   bool has_textures() const { return has_textures_; }
   std::uint64_t triangles() const { return triangles_; }
 

@@ -18,8 +18,8 @@ std::uint32_t pack_octahedral(glm::vec3 unit) {
     p = glm::vec2(std::copysign(folded.x, p.x), std::copysign(folded.y, p.y));
   }
   const auto snorm16 = [](float x) {
-    return static_cast<std::uint32_t>(static_cast<std::uint16_t>(
-        static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f))));
+    return static_cast<std::uint32_t>(
+        static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(std::clamp(x, -1.0f, 1.0f) * 32767.0f))));
   };
   return snorm16(p.x) | snorm16(p.y) << 16;
 }

@@ -21,8 +21,7 @@ void GBufferPass::resize(glm::ivec2 size_px) {
   buffer_.material = gl::Texture("g-buffer material", GL_RG32UI, size_px);
   buffer_.emission = gl::Texture("g-buffer emission", GL_RGBA16F, size_px);
   buffer_.depth = gl::Texture("g-buffer depth", GL_DEPTH_COMPONENT32F, size_px);
-  framebuffer_ =
-      gl::Framebuffer("g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission}, &buffer_.depth);
+  framebuffer_ = gl::Framebuffer("g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission}, &buffer_.depth);
 }
 
 const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed) {

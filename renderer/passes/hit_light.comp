@@ -22,10 +22,10 @@ layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = BINDING_HIT_RADIANCE) writeonly buffer HitRadiance { uvec2 hit_radiance[]; };
 
 uniform uint ray_count;
-uniform int literal;  // 1: Algorithm 2 as printed
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 
+#ifdef LITERAL
 // Algorithm 2 as printed: the hit's BRDF between the direction to the hit and the one to the camera. Its 1/r^2 is
 // applied where the sum is, since near hits would leave the range of halves.
 vec3 literal_weight(Ray ray, HitPoint point, Brdf brdf) {
@@ -35,6 +35,7 @@ vec3 literal_weight(Ray ray, HitPoint point, Brdf brdf) {
   const vec3 unit_in = normalize(in_direction);
   return brdf_times_cosine(brdf, out_direction, unit_in) / max(unit_in.z, 1e-4);
 }
+#endif
 
 vec3 light_of_hit(Ray ray, Hit hit) {
   const HitPoint point = hit_point(ray, hit, hit.t * kFootprintPerMetre);
@@ -42,7 +43,9 @@ vec3 light_of_hit(Ray ray, Hit hit) {
   const Brdf brdf = point.brdf;
   vec3 radiance = point.surface.emission + reflected_punctual_light(brdf, point.position_ws, point.surface.normal_ws,
                                                                     point.geometric_normal_ws, -ray.direction_ws);
-  if (literal == 1) radiance *= literal_weight(ray, point, brdf);
+#ifdef LITERAL
+  radiance *= literal_weight(ray, point, brdf);
+#endif
   return radiance;
 }
 
@@ -54,8 +57,10 @@ void main() {
   vec3 radiance = vec3(0.0);
   if (hit.t >= 0.0)
     radiance = light_of_hit(ray, hit);
-  else if (ray.t_max > 0.0 && literal == 0)
+#ifndef LITERAL
+  else if (ray.t_max > 0.0)
     radiance = environment_radiance(ray.direction_ws);
+#endif
   radiance = min(radiance, vec3(65504.0));  // the largest half
   hit_radiance[index] = uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 0.0)));
 }

@@ -36,13 +36,12 @@ class HitLightPass {
 
  private:
   struct Variant {
-    explicit Variant(const gl::ProgramPtr& p) : program(p), ray_count(p, "ray_count"), literal(p, "literal") {}
+    explicit Variant(const gl::ProgramPtr& p) : program(p), ray_count(p, "ray_count") {}
     gl::ProgramPtr program;
     gl::Uniform<std::uint32_t> ray_count;
-    gl::Uniform<int> literal;
   };
   void bind(const Directions& directions, const OcclusionMap& occlusion) const;
-  Variant plain_, textured_;
+  Variant plain_, textured_, plain_literal_, textured_literal_;
   gl::ProgramPtr screen_program_;
   gl::Uniform<std::uint32_t> screen_ray_count_;
   HitRadiance radiance_;

@@ -157,13 +157,12 @@ std::uint32_t SceneTextures::slot(const TextureUse& use, bool srgb) const {
   if (found < 0) return 0;
   const Layer& layer = layers_[static_cast<std::size_t>(found)];
   const Sampler& sampler = texture.sampler;
-  const auto wrap_bits = [](Wrap wrap) {
-    return wrap == Wrap::kRepeat ? 0u : wrap == Wrap::kMirroredRepeat ? 1u : 2u;
-  };
+  const auto wrap_bits = [](Wrap wrap) { return wrap == Wrap::kRepeat ? 0u : wrap == Wrap::kMirroredRepeat ? 1u : 2u; };
   return 0x80000000u | static_cast<std::uint32_t>(layer.size_class + (srgb ? 0 : TEXTURE_CLASSES)) |
          static_cast<std::uint32_t>(layer.index) << 3 | wrap_bits(sampler.wrap_s) << 14 |
          wrap_bits(sampler.wrap_t) << 16 | (sampler.mag_nearest ? 1u << 18 : 0u) |
-         (sampler.min_nearest ? 1u << 19 : 0u) | (sampler.mipmapped ? 1u << 20 : 0u) | (use.uv_set == 1 ? 1u << 21 : 0u);
+         (sampler.min_nearest ? 1u << 19 : 0u) | (sampler.mipmapped ? 1u << 20 : 0u) |
+         (use.uv_set == 1 ? 1u << 21 : 0u);
 }
 
 bool SceneTextures::fits(const Scene& scene) const {

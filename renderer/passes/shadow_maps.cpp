@@ -23,18 +23,20 @@ struct DeviceLight {
   float shadow_far_m;
   std::int32_t first_shadow_layer;
   float padding;
+  glm::mat4 shadow_clip_from_world;
 };
-static_assert(sizeof(DeviceLight) == 64);
+static_assert(sizeof(DeviceLight) == 128);
 
 struct DeviceLightsHeader {
-  glm::mat4 shadow_clip_from_world[MAX_SHADOW_LAYERS];
   std::uint32_t light_count;
   float shadow_least_variance;
   float shadow_cube_scale;
   std::uint32_t padding;
 };
 
-int layers_of(LightKind kind) { return kind == LightKind::kPoint ? 6 : 1; }
+int layers_of(LightKind kind) {
+  return kind == LightKind::kPoint ? 6 : 1;
+}
 
 glm::vec3 any_perpendicular(glm::vec3 unit) {
   const glm::vec3 axis = std::abs(unit.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
@@ -179,17 +181,18 @@ std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose)
         views.push_back({directional_clip(pose, placed.direction_ws), glm::vec4(0.0f)});
       } else if (placed.light.kind == LightKind::kSpot) {
         const float tangent = std::tan(std::min(placed.light.outer_cone_angle, 1.5f)) * 1.02f;
-        views.push_back({perspective_clip(tangent, near, light.shadow_far_m) * light_from_world(at, placed.direction_ws),
-                         position_far});
+        views.push_back(
+            {perspective_clip(tangent, near, light.shadow_far_m) * light_from_world(at, placed.direction_ws),
+             position_far});
       } else {
         for (const glm::mat4& face : cube_clips(at, cube_tangent(), near, light.shadow_far_m))
           views.push_back({face, position_far});
       }
+      light.shadow_clip_from_world = views[static_cast<std::size_t>(light.first_shadow_layer)].clip_from_world;
     }
     lights.push_back(light);
   }
   DeviceLightsHeader header{};
-  for (std::size_t i = 0; i < views.size(); ++i) header.shadow_clip_from_world[i] = views[i].clip_from_world;
   header.light_count = static_cast<std::uint32_t>(lights.size());
   header.shadow_least_variance = 1e-7f;
   header.shadow_cube_scale = 1.0f / cube_tangent();

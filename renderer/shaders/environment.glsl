@@ -7,14 +7,18 @@ layout(std140, binding = BINDING_ENVIRONMENT) uniform EnvironmentBlock {
   vec4 background;        // what the camera sees instead; w: 1 if set
 } environment;
 
+#ifdef HAS_ENVIRONMENT_IMAGE
 layout(binding = UNIT_ENVIRONMENT) uniform sampler2D environment_image;  // latitude-longitude, row 0 the zenith
+#endif
 
 vec3 environment_radiance(vec3 direction_ws) {
+#ifdef HAS_ENVIRONMENT_IMAGE
   if (environment.ground_radiance.w > 0.5) {
     const float longitude = atan(direction_ws.x, -direction_ws.z) + environment.zenith_radiance.w;
     const vec2 uv = vec2(longitude / (2.0 * kPi) + 0.5, acos(clamp(direction_ws.y, -1.0, 1.0)) / kPi);
     return textureLod(environment_image, uv, 0.0).rgb * environment.horizon_radiance.w;
   }
+#endif
   const float up = direction_ws.y;
   const vec3 sky = mix(environment.horizon_radiance.rgb, environment.zenith_radiance.rgb, sqrt(max(up, 0.0)));
   const vec3 below = mix(environment.horizon_radiance.rgb, environment.ground_radiance.rgb, smoothstep(0.0, 0.15, -up));

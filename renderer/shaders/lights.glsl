@@ -11,10 +11,10 @@ struct Light {
   float shadow_far_m;    // distance at which the normalised shadow depth is 1
   int first_shadow_layer; // -1: casts none
   float padding;
+  mat4 shadow_clip_from_world;  // directional and spot lights
 };
 
 layout(std140, binding = BINDING_LIGHTS) uniform Lights {
-  mat4 shadow_clip_from_world[MAX_SHADOW_LAYERS];
   uint light_count;
   float shadow_least_variance;
   float shadow_cube_scale;  // 1 / tangent of half a cube face's angle, a little under 1
@@ -44,7 +44,7 @@ vec3 cube_face(vec3 direction) {
 // Share of the light that reaches a point, from the shadow map; 1 outside it.
 float light_visibility(Light light, vec3 position_ws) {
   const vec3 from_light = position_ws - light.position_ws;
-  const vec4 clip = shadow_clip_from_world[max(light.first_shadow_layer, 0)] * vec4(position_ws, 1.0);
+  const vec4 clip = light.shadow_clip_from_world * vec4(position_ws, 1.0);
   vec2 ndc = clip.xy / clip.w;
   float layer = float(light.first_shadow_layer);
   if (light.kind == 1u) {
@@ -84,16 +84,26 @@ LightSample light_at(Light light, vec3 position_ws) {
   return at;
 }
 
+// What one light adds to reflected_punctual_light(); `frame` is the shading normal's.
+vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, mat3 frame, vec3 out_direction, vec3 geometric_normal_ws) {
+  const LightSample at = light_at(light, position_ws);
+  const vec3 reflected = brdf_times_cosine(brdf, out_direction, at.to_light_ws * frame) * at.irradiance;
+  const float facing = dot(geometric_normal_ws, at.to_light_ws) > 0.0 ? 1.0 : 0.0;
+  return reflected * (facing * light_visibility(light, position_ws));
+}
+
 // Radiance towards `out_ws` of punctual light reflected at a point. `normal_ws` is the shading normal on the viewer's side.
+// The first two lights are read by constant indices: on a software device a variable one costs a load per invocation
+// and word, four times the rest of this function.
 vec3 reflected_punctual_light(Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 geometric_normal_ws, vec3 out_ws) {
   const mat3 frame = frame_around(normal_ws);
   const vec3 out_direction = out_ws * frame;
   vec3 radiance = vec3(0.0);
-  for (uint i = 0u; i < light_count; ++i) {
-    const LightSample at = light_at(lights[i], position_ws);
-    const vec3 reflected = brdf_times_cosine(brdf, out_direction, at.to_light_ws * frame) * at.irradiance;
-    const float facing = dot(geometric_normal_ws, at.to_light_ws) > 0.0 ? 1.0 : 0.0;
-    radiance += reflected * (facing * light_visibility(lights[i], position_ws));
-  }
+  if (light_count > 0u)
+    radiance += reflected_light(lights[0], brdf, position_ws, frame, out_direction, geometric_normal_ws);
+  if (light_count > 1u)
+    radiance += reflected_light(lights[1], brdf, position_ws, frame, out_direction, geometric_normal_ws);
+  for (uint i = 2u; i < light_count; ++i)
+    radiance += reflected_light(lights[i], brdf, position_ws, frame, out_direction, geometric_normal_ws);
   return radiance;
 }

@@ -62,8 +62,7 @@ TEST(DirectLight, WhatStandsBehindAnotherSurfaceIsInShadow) {
       with_light.directional({0, -1, 0}, 1.0f);
     else
       with_light.point({0, 2, 0}, 5.0f);
-    const Pixels pixels =
-        render(with_light.take(), look_at({0, 0.4f, 3.0f}, {0, 0, 0}, 0.2f), thesis_settings(0));
+    const Pixels pixels = render(with_light.take(), look_at({0, 0.4f, 3.0f}, {0, 0, 0}, 0.2f), thesis_settings(0));
     EXPECT_LT(pixels.center().g, 1e-3f) << (sun ? "sun" : "point");
   }
 }
@@ -133,9 +132,9 @@ TEST(IndirectLight, ARedWallBehindTheCameraTintsTheFirstBounceOnly) {
     SceneMaker maker;
     const int white = maker.material(lambert(glm::vec3(0.7f)));
     const int red = maker.material(lambert({0.7f, 0.0f, 0.0f}));
-    maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, white);   // in front of the camera, facing it
-    maker.quad({-2, -2, 2}, {0, 4, 0}, {4, 0, 0}, red);      // behind it, facing the white wall
-    maker.spot({0, 0, 1.0f}, {0, 0, 1}, 20.0f, 0.9f);        // lights the red wall alone
+    maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, white);  // in front of the camera, facing it
+    maker.quad({-2, -2, 2}, {0, 4, 0}, {4, 0, 0}, red);     // behind it, facing the white wall
+    maker.spot({0, 0, 1.0f}, {0, 0, 1}, 20.0f, 0.9f);       // lights the red wall alone
     Settings settings = thesis_settings(bounces);
     settings.view = ViewKind::kIndirect;
     settings.samples = 256;
@@ -150,9 +149,9 @@ TEST(IndirectLight, ARedWallBehindTheCameraTintsTheFirstBounceOnly) {
 TEST(IndirectLight, AHitInShadowContributesNothing) {
   SceneMaker maker;
   const int grey = maker.material(lambert(glm::vec3(0.7f)));
-  maker.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, grey);      // floor
-  maker.quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, grey);      // back wall
-  maker.quad({-3, 3.1f, -3}, {6, 0, 0}, {0, 0, 6}, grey);   // a roof, facing down: keeps the sun out of it all
+  maker.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, grey);     // floor
+  maker.quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, grey);     // back wall
+  maker.quad({-3, 3.1f, -3}, {6, 0, 0}, {0, 0, 6}, grey);  // a roof, facing down: keeps the sun out of it all
   maker.directional({0, -1, 0.01f}, 100.0f);
   Settings settings = thesis_settings(1);
   settings.view = ViewKind::kIndirect;

@@ -61,12 +61,12 @@ void SceneMaker::quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int 
 void SceneMaker::room(glm::vec3 low, glm::vec3 high, int material) {
   const glm::vec3 size = high - low;
   const glm::vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
-  quad(low, z, x, material);        // floor, facing up
-  quad(high, -x, -z, material);     // ceiling: cross(-x, -z) points down
-  quad(low, x, y, material);        // back, facing +z
-  quad(high, -y, -x, material);     // front, facing -z
-  quad(low, y, z, material);        // left, facing +x
-  quad(high, -z, -y, material);     // right, facing -x
+  quad(low, z, x, material);     // floor, facing up
+  quad(high, -x, -z, material);  // ceiling: cross(-x, -z) points down
+  quad(low, x, y, material);     // back, facing +z
+  quad(high, -y, -x, material);  // front, facing -z
+  quad(low, y, z, material);     // left, facing +x
+  quad(high, -z, -y, material);  // right, facing -x
 }
 
 void SceneMaker::add_light(const Light& light, glm::vec3 position, glm::vec3 direction) {
@@ -113,8 +113,8 @@ PlacedCamera look_at(glm::vec3 eye, glm::vec3 target, float yfov) {
 }
 
 glm::vec3 Pixels::at(int x, int y) const {
-  const std::size_t first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x) +
-                                 static_cast<std::size_t>(x));
+  const std::size_t first =
+      3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x) + static_cast<std::size_t>(x));
   return {rgb[first], rgb[first + 1], rgb[first + 2]};
 }
 

@@ -6,7 +6,6 @@
 
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
-#include "renderer/passes/direct_light.h"
 #include "renderer/passes/gather.h"
 #include "renderer/renderer.h"
 
@@ -14,7 +13,7 @@ namespace lightwell {
 
 /// Scene-referred linear BT.709; a: share of lit surface, negative where unlit.
 struct Picture {
-  gl::Texture image;            // RGBA32F
+  gl::Texture image;              // RGBA32F
   std::uint32_t accumulated = 0;  // frames averaged in it
 };
 
@@ -32,18 +31,23 @@ class EnvironmentBlock {
 };
 
 /// Direct and indirect light, or one of the views, into the picture.
-class ResolvePass {
+class ComposePass {
  public:
-  explicit ResolvePass(gl::ShaderLibrary& shaders);
+  explicit ComposePass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 size_px);
   /// `accumulate`: average with the frames already in the picture.
-  const Picture& run(const GBuffer& g_buffer, const DirectRadiance& direct, const IndirectMap& indirect,
+  const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                     const IndirectMap& indirect,
                      const gl::Texture& occlusion_distance, ViewKind view, bool accumulate);
   const Picture& picture() const { return picture_; }
 
  private:
-  gl::ProgramPtr program_;
-  gl::Uniform<int> view_, frame_number_;
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p) : program(p), view(p, "view"), frame_number(p, "frame_number") {}
+    gl::ProgramPtr program;
+    gl::Uniform<int> view, frame_number;
+  };
+  Variant plain_, environment_image_, auxiliary_;
   Picture picture_;
 };
 

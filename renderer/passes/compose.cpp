@@ -1,4 +1,4 @@
-#include "renderer/passes/resolve.h"
+#include "renderer/passes/compose.h"
 
 #include <cmath>
 #include <cstring>
@@ -50,25 +50,30 @@ void EnvironmentBlock::bind() const {
   glBindTextureUnit(UNIT_ENVIRONMENT, image_.id());
 }
 
-ResolvePass::ResolvePass(gl::ShaderLibrary& shaders)
-    : program_(shaders.compute("passes/resolve.comp")), view_(program_, "view"), frame_number_(program_, "frame_number") {}
+ComposePass::ComposePass(gl::ShaderLibrary& shaders)
+    : plain_(shaders.compute("passes/compose.comp")),
+      environment_image_(shaders.compute("passes/compose.comp", {"HAS_ENVIRONMENT_IMAGE 1"})),
+      auxiliary_(shaders.compute("passes/compose.comp", {"AUXILIARY_VIEWS 1"})) {}
 
-void ResolvePass::resize(glm::ivec2 size_px) {
+void ComposePass::resize(glm::ivec2 size_px) {
   if (picture_.image && picture_.image.size_px() == size_px) return;
   picture_ = {gl::Texture("picture", GL_RGBA32F, size_px), 0};
 }
 
-const Picture& ResolvePass::run(const GBuffer& g_buffer, const DirectRadiance& direct, const IndirectMap& indirect,
-                                const gl::Texture& occlusion_distance, ViewKind view, bool accumulate) {
+const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                                const IndirectMap& indirect, const gl::Texture& occlusion_distance, ViewKind view,
+                                bool accumulate) {
   if (!accumulate) picture_.accumulated = 0;
   g_buffer.bind();
-  direct.image.bind(UNIT_IMAGE_A);
+  shadows.bind();
   indirect.image.bind(UNIT_IMAGE_B);
   occlusion_distance.bind(UNIT_IMAGE_C);
   picture_.image.bind_image(0, GL_READ_WRITE);
-  view_ = static_cast<int>(view);
-  frame_number_ = static_cast<int>(picture_.accumulated);
-  program_->dispatch(picture_.image.size_px());
+  const bool light = view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
+  Variant& variant = !light ? auxiliary_ : scene.has_textures() ? environment_image_ : plain_;
+  variant.view = static_cast<int>(view);
+  variant.frame_number = static_cast<int>(picture_.accumulated);
+  variant.program->dispatch(picture_.image.size_px());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   ++picture_.accumulated;
   return picture_;

@@ -1,5 +1,6 @@
-// One scene-referred picture from the parts: direct light, the indirect map scaled up bilinearly (thesis 5.3) and
-// multiplied with the directional albedo it was divided by; or one of the views. Averages with earlier frames.
+// One scene-referred picture: emission and direct light through the variance shadow maps (thesis 4.1), and the indirect
+// map scaled up bilinearly (thesis 5.3) and multiplied with the directional albedo it was divided by; or one of the
+// views. Averages with earlier frames.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "passes/bindings.glsl"
@@ -8,10 +9,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
+#include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 
 layout(rgba32f, binding = 0) uniform image2D picture;  // a: share of lit surface (not background, not unlit)
-layout(binding = UNIT_IMAGE_A) uniform sampler2D direct_radiance;
 layout(binding = UNIT_IMAGE_B) uniform sampler2D indirect_map;
 layout(binding = UNIT_IMAGE_C) uniform sampler2D occlusion_distance;
 
@@ -20,29 +21,39 @@ uniform int frame_number;  // 0: first of an accumulation
 
 const int kFinal = 0, kDirect = 1, kIndirect = 2, kAlbedo = 3, kNormal = 4, kDepth = 5, kOcclusionDistance = 6;
 
+vec3 direct_light(ivec2 pixel, GBufferPoint point) {
+  return texelFetch(g_emission, pixel, 0).rgb +
+         reflected_punctual_light(point.brdf, point.position_ws, point.normal_ws, point.geometric_normal_ws,
+                                  point.to_camera_ws);
+}
+
 vec3 indirect_light(GBufferPoint point, vec2 uv) {
   const vec4 demodulated = textureLod(indirect_map, uv, 0.0);
   const vec3 albedo = directional_albedo(point.brdf, max(dot(point.normal_ws, point.to_camera_ws), 0.0));
   return demodulated.rgb / max(demodulated.a, 1e-3) * max(albedo, vec3(1e-4));
 }
 
-vec3 background(vec2 position_px) {
-  const bool shown = view == kFinal || view == kDirect;
-  return shown ? background_radiance(normalize(camera_ray_ws(position_px))) : vec3(0.0);
-}
-
+#ifdef AUXILIARY_VIEWS
 vec3 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
-  const vec3 direct = texelFetch(direct_radiance, pixel, 0).rgb;
   switch (view) {
-    case kDirect: return direct;
-    case kIndirect: return indirect_light(point, uv);
     case kAlbedo: return point.brdf.diffuse_albedo + point.brdf.f0;
     case kNormal: return point.normal_ws * 0.5 + 0.5;
     case kDepth: return vec3(point.view_depth_m);
-    case kOcclusionDistance: return textureLod(occlusion_distance, uv, 0.0).rrr;
-    default: return direct + indirect_light(point, uv);
+    default: return textureLod(occlusion_distance, uv, 0.0).rrr;
   }
 }
+
+vec3 background(vec2 position_px) { return vec3(0.0); }
+#else
+vec3 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
+  const vec3 direct = direct_light(pixel, point) * (view == kIndirect ? 0.0 : 1.0);
+  return direct + indirect_light(point, uv) * (view == kDirect ? 0.0 : 1.0);
+}
+
+vec3 background(vec2 position_px) {
+  return view == kIndirect ? vec3(0.0) : background_radiance(normalize(camera_ray_ws(position_px)));
+}
+#endif
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -50,13 +61,10 @@ void main() {
   const vec2 position_px = vec2(pixel) + 0.5;
   const GBufferPoint point = g_buffer_point(pixel);
   const bool unlit = texelFetch(g_emission, pixel, 0).a > 0.5;
-  vec4 value = vec4(0.0);
-  if (point.valid)
-    value = vec4(surface_value(pixel, point, position_px / vec2(camera.size_px.xy)), unlit ? 0.0 : 1.0);
-  else
-    value = vec4(background(position_px), 0.0);
   // Unlit surfaces show their colour as it is, whatever the exposure: marked by a negative share.
-  if (point.valid && unlit) value.a = -1.0;
+  vec4 value = point.valid
+                   ? vec4(surface_value(pixel, point, position_px / vec2(camera.size_px.xy)), unlit ? -1.0 : 1.0)
+                   : vec4(background(position_px), 0.0);
   if (frame_number > 0) value = mix(imageLoad(picture, pixel), value, 1.0 / float(frame_number + 1));
   imageStore(picture, pixel, value);
 }
