@@ -4,6 +4,8 @@ namespace lightwell::protocol {
 
 std::string_view status_phrase(int status) {
   switch (status) {
+    case 308:
+      return "Permanent Redirect";
     case 400:
       return "Bad Request";
     case 401:
@@ -28,6 +30,8 @@ std::string_view status_phrase(int status) {
       return "URI Too Long";
     case 415:
       return "Unsupported Media Type";
+    case 417:
+      return "Expectation Failed";
     case 422:
       return "Unprocessable Content";
     case 426:
@@ -42,6 +46,8 @@ std::string_view status_phrase(int status) {
       return "Not Implemented";
     case 503:
       return "Service Unavailable";
+    case 505:
+      return "HTTP Version Not Supported";
     default:
       return "Error";
   }
