@@ -65,6 +65,7 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   directions_pass_.resize(most_rays);
   hit_light_pass_.resize(most_rays);
   occlusion_.hits.reserve(std::uint64_t{most_rays} * sizeof(Hit));
+  occlusion_.hit_texels.attach(occlusion_.hits);
   gather_pass_.resize(grid.map_size_px);
   filter_pass_.resize(grid.map_size_px);
   if (all_bounces_.image && all_bounces_.image.size_px() == grid.map_size_px) return;

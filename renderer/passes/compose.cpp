@@ -51,13 +51,14 @@ void EnvironmentBlock::bind() const {
 }
 
 ComposePass::ComposePass(gl::ShaderLibrary& shaders)
-    : plain_(shaders.compute("passes/compose.comp")),
-      environment_image_(shaders.compute("passes/compose.comp", {"HAS_ENVIRONMENT_IMAGE 1"})),
-      auxiliary_(shaders.compute("passes/compose.comp", {"AUXILIARY_VIEWS 1"})) {}
+    : plain_(shaders.raster("passes/full_screen.vert", "passes/compose.frag")),
+      general_(shaders.raster("passes/full_screen.vert", "passes/compose.frag", {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
+      auxiliary_(shaders.raster("passes/full_screen.vert", "passes/compose.frag", {"AUXILIARY_VIEWS 1"})) {}
 
 void ComposePass::resize(glm::ivec2 size_px) {
   if (picture_.image && picture_.image.size_px() == size_px) return;
   picture_ = {gl::Texture("picture", GL_RGBA32F, size_px), 0};
+  framebuffer_ = gl::Framebuffer("picture", {&picture_.image}, nullptr);
 }
 
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
@@ -68,13 +69,19 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   shadows.bind();
   indirect.image.bind(UNIT_IMAGE_B);
   occlusion_distance.bind(UNIT_IMAGE_C);
-  picture_.image.bind_image(0, GL_READ_WRITE);
   const bool light = view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
-  Variant& variant = !light ? auxiliary_ : scene.has_textures() ? environment_image_ : plain_;
+  const bool general = scene.has_environment_image() || scene.has_many_lights();
+  Variant& variant = !light ? auxiliary_ : general ? general_ : plain_;
   variant.view = static_cast<int>(view);
-  variant.frame_number = static_cast<int>(picture_.accumulated);
-  variant.program->dispatch(picture_.image.size_px());
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  variant.program->use();
+  framebuffer_.bind();
+  if (picture_.accumulated > 0) {
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+    glBlendColor(0.0f, 0.0f, 0.0f, 1.0f / static_cast<float>(picture_.accumulated + 1));
+  }
+  full_screen_.draw_full_screen();
+  glDisable(GL_BLEND);
   ++picture_.accumulated;
   return picture_;
 }

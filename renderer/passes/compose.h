@@ -43,12 +43,14 @@ class ComposePass {
 
  private:
   struct Variant {
-    explicit Variant(const gl::ProgramPtr& p) : program(p), view(p, "view"), frame_number(p, "frame_number") {}
+    explicit Variant(const gl::ProgramPtr& p) : program(p), view(p, "view") {}
     gl::ProgramPtr program;
-    gl::Uniform<int> view, frame_number;
+    gl::Uniform<int> view;
   };
-  Variant plain_, environment_image_, auxiliary_;
+  Variant plain_, general_, auxiliary_;
   Picture picture_;
+  gl::Framebuffer framebuffer_;
+  gl::EmptyVertexArray full_screen_;
 };
 
 /// Exposure, tone curve, sRGB.

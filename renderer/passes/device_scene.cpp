@@ -100,6 +100,7 @@ void DeviceScene::prepare(const Scene& scene, const Pose& pose) {
   use_textures(scene);
   upload_materials(scene);
   upload_instances(scene, pose);
+  has_many_lights_ = pose.lights.size() > 2;
   attach_buffers();
   set_vertex_array();
 }
@@ -148,7 +149,8 @@ void DeviceScene::upload_materials(const Scene& scene) {
     return (material.base_color_texture.slot | material.metallic_roughness_texture.slot |
             material.normal_texture.slot | material.emissive_texture.slot) != 0;
   };
-  has_textures_ = scene.environment.image || std::any_of(packed.begin(), packed.end(), textured);
+  has_environment_image_ = scene.environment.image != nullptr;
+  has_textures_ = has_environment_image_ || std::any_of(packed.begin(), packed.end(), textured);
   materials_.reserve(packed.size() * sizeof(DeviceMaterial));
   materials_.upload(std::span<const DeviceMaterial>(packed));
 }

@@ -56,9 +56,11 @@ class DeviceScene {
   /// Binds everything that shaders/scene_data.glsl and textures.glsl declare.
   void bind() const;
 
-  /// True if a material has a texture, a mesh vertex colours or the environment an image: shaders need the variant that
-  /// reads them.
+  /// What the shaders of this scene must be able to do; a software device pays for all that they could.
+  /// Textures: also vertex colours and an environment image. Many lights: more than two.
   bool has_textures() const { return has_textures_; }
+  bool has_environment_image() const { return has_environment_image_; }
+  bool has_many_lights() const { return has_many_lights_; }
   std::uint64_t triangles() const { return triangles_; }
 
   /// Draws all instances in three groups; `begin_group` sets the state of each before it is drawn.
@@ -90,7 +92,7 @@ class DeviceScene {
   gl::BufferTexture vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
   GLuint vertex_array_ = 0;
   Draws draws_[3];
-  bool has_textures_ = false;
+  bool has_textures_ = false, has_environment_image_ = false, has_many_lights_ = false;
   std::uint64_t triangles_ = 0;
 };
 

@@ -17,6 +17,7 @@ DirectionsPass::DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers
 
 void DirectionsPass::resize(std::uint32_t most_rays) {
   directions_.rays.reserve(std::uint64_t{most_rays} * sizeof(Ray));
+  directions_.ray_texels.attach(directions_.rays);
   directions_.weights.reserve(std::uint64_t{most_rays} * 8);
 }
 
@@ -34,7 +35,7 @@ const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMap
   seed_ = seed;
   constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp
   program_->dispatch(grid.pixels() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return directions_;
 }
 

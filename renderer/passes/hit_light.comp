@@ -1,5 +1,6 @@
 // Light leaving the hits towards their pixels: the occlusion map as indirect light sources (thesis 4.2). A hit in shadow
-// gives nothing but its own emission; a miss gives the environment.
+// gives nothing but its own emission; a miss gives the environment. Rays and hits are read as buffer textures, see
+// shaders/scene_data.glsl.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -17,8 +18,8 @@ layout(local_size_x = 64) in;
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 
-layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
+layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;  // 2 texels a ray
+layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit
 layout(std430, binding = BINDING_HIT_RADIANCE) writeonly buffer HitRadiance { uvec2 hit_radiance[]; };
 
 uniform uint ray_count;
@@ -52,8 +53,13 @@ vec3 light_of_hit(Ray ray, Hit hit) {
 void main() {
   const uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
   if (index >= ray_count) return;
-  const Ray ray = rays[index];
-  const Hit hit = hits[index];
+  const vec4 origin = texelFetch(ray_texels, int(2u * index));
+  const vec4 direction = texelFetch(ray_texels, int(2u * index + 1u));
+  const Ray ray = Ray(origin.xyz, origin.w, direction.xyz, direction.w);
+  const int first = int(5u * index);
+  const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, first).x), texelFetch(hit_words, first + 1).x,
+                      texelFetch(hit_words, first + 2).x, uintBitsToFloat(texelFetch(hit_words, first + 3).x),
+                      uintBitsToFloat(texelFetch(hit_words, first + 4).x));
   vec3 radiance = vec3(0.0);
   if (hit.t >= 0.0)
     radiance = light_of_hit(ray, hit);

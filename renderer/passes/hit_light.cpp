@@ -6,10 +6,10 @@ namespace lightwell {
 
 HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.compute("passes/hit_light.comp")),
+      many_lights_(shaders.compute("passes/hit_light.comp", {"MANY_LIGHTS 1"})),
       textured_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1"})),
-      plain_literal_(shaders.compute("passes/hit_light.comp", {"LITERAL 1"})),
-      textured_literal_(
-          shaders.compute("passes/hit_light.comp", {"LITERAL 1", "HAS_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1"})),
+      general_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
+      literal_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "MANY_LIGHTS 1", "LITERAL 1"})),
       screen_program_(shaders.compute("passes/screen_light.comp")),
       screen_ray_count_(screen_program_, "ray_count") {
   radiance_.radiance = gl::Buffer("hit radiance", 0);
@@ -25,12 +25,19 @@ void HitLightPass::bind(const Directions& directions, const OcclusionMap& occlus
   radiance_.radiance.bind_storage(BINDING_HIT_RADIANCE);
 }
 
+HitLightPass::Variant& HitLightPass::variant_for(const DeviceScene& scene, bool literal) {
+  if (literal) return literal_;
+  if (scene.has_textures()) return scene.has_many_lights() ? general_ : textured_;
+  return scene.has_many_lights() ? many_lights_ : plain_;
+}
+
 const HitRadiance& HitLightPass::run(const DeviceScene& scene, const Directions& directions,
                                      const OcclusionMap& occlusion, const ShadowMaps& shadows, bool literal) {
   bind(directions, occlusion);
+  directions.ray_texels.bind(UNIT_RAYS);
+  occlusion.hit_texels.bind(UNIT_HITS);
   shadows.bind();
-  Variant& variant = literal ? (scene.has_textures() ? textured_literal_ : plain_literal_)
-                             : (scene.has_textures() ? textured_ : plain_);
+  Variant& variant = variant_for(scene, literal);
   variant.ray_count = directions.ray_count;
   variant.program->dispatch(directions.ray_count);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

@@ -12,7 +12,8 @@ namespace lightwell {
 
 /// The nearest hit along each ray of a batch of directions: M(p, d_j) of the thesis, as records.
 struct OcclusionMap {
-  gl::Buffer hits;  // Hit
+  gl::Buffer hits;                                // Hit
+  gl::BufferTexture hit_texels{"hits", GL_R32UI};  // the same, 5 texels a hit
 };
 
 /// Radiance arriving along each ray of a batch.
@@ -41,7 +42,8 @@ class HitLightPass {
     gl::Uniform<std::uint32_t> ray_count;
   };
   void bind(const Directions& directions, const OcclusionMap& occlusion) const;
-  Variant plain_, textured_, plain_literal_, textured_literal_;
+  Variant& variant_for(const DeviceScene& scene, bool literal);
+  Variant plain_, many_lights_, textured_, general_, literal_;
   gl::ProgramPtr screen_program_;
   gl::Uniform<std::uint32_t> screen_ray_count_;
   HitRadiance radiance_;

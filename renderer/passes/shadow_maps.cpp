@@ -131,9 +131,10 @@ void ShadowMaps::bind() const {
 ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag")),
       textured_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
-      filter_program_(shaders.compute("passes/shadow_filter.comp")),
+      filter_program_(shaders.raster("passes/full_screen.vert", "passes/shadow_filter.frag")),
       filter_direction_(filter_program_, "direction"),
-      filter_radius_(filter_program_, "radius") {
+      filter_radius_(filter_program_, "radius"),
+      filter_texel_size_(filter_program_, "texel_size") {
   maps_.lights = gl::Buffer("lights", sizeof(DeviceLightsHeader) + MAX_LIGHTS * sizeof(DeviceLight));
 }
 
@@ -145,17 +146,26 @@ int ShadowMapsPass::layers_for(const Pose& pose) {
 }
 
 void ShadowMapsPass::resize(int size_px, int filter_px, int layers) {
+  const bool same = raw_ && raw_.size_px().x == size_px && maps_.moments.layers() == std::max(layers, 1) &&
+                    (filter_px > 1) == (filter_px_ > 1);
   filter_px_ = filter_px;
-  layers = std::max(layers, 1);
-  if (maps_.moments && maps_.moments.size_px().x == size_px && maps_.moments.layers() == layers) return;
-  gl::TextureOptions options{.target = GL_TEXTURE_2D_ARRAY, .layers = layers};
-  across_ = gl::Texture("shadow moments, half filtered", GL_RG32F, glm::ivec2(size_px), options);
+  if (same) return;
+  gl::TextureOptions options;
   options.min_filter = options.mag_filter = GL_LINEAR;
-  maps_.moments = gl::Texture("shadow moments", GL_RG32F, glm::ivec2(size_px), options);
-  depth_ = gl::Texture("shadow depth", GL_DEPTH_COMPONENT32F, glm::ivec2(size_px));
-  framebuffers_.clear();
-  for (int layer = 0; layer < layers; ++layer)
-    framebuffers_.emplace_back("shadow map", std::initializer_list<const gl::Texture*>{&maps_.moments}, &depth_, layer);
+  const glm::ivec2 side(size_px), half(filter_px > 1 ? size_px / 2 : size_px);
+  raw_ = gl::Texture("shadow moments of a light", GL_RG32F, side, options);
+  depth_ = gl::Texture("shadow depth", GL_DEPTH_COMPONENT32F, side);
+  raw_framebuffer_ = gl::Framebuffer("shadow map of a light", {&raw_}, &depth_);
+  for (std::size_t i = 0; i < 2; ++i) {
+    half_[i] = gl::Texture("shadow moments, half filtered", GL_RG32F, half, options);
+    half_framebuffers_[i] = gl::Framebuffer("half filtered shadow map", {&half_[i]}, nullptr);
+  }
+  options.target = GL_TEXTURE_2D_ARRAY;
+  options.layers = std::max(layers, 1);
+  maps_.moments = gl::Texture("shadow moments", GL_RG32F, half, options);
+  layers_.clear();
+  for (int layer = 0; layer < options.layers; ++layer)
+    layers_.emplace_back("shadow map", std::initializer_list<const gl::Texture*>{&maps_.moments}, nullptr, layer);
 }
 
 // A margin over 90 degrees lets the filter look past the edges of a cube's face.
@@ -201,12 +211,11 @@ std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose)
   return views;
 }
 
-void ShadowMapsPass::draw(const DeviceScene& scene, const View& view, int layer) {
-  const gl::Framebuffer& framebuffer = framebuffers_[static_cast<std::size_t>(layer)];
-  framebuffer.bind();
+void ShadowMapsPass::draw(const DeviceScene& scene, const View& view) {
+  raw_framebuffer_.bind();
   const GLfloat far[4] = {1, 1, 0, 0};
-  glClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, 0, far);
-  glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, far);
+  glClearNamedFramebufferfv(raw_framebuffer_.id(), GL_COLOR, 0, far);
+  glClearNamedFramebufferfv(raw_framebuffer_.id(), GL_DEPTH, 0, far);
   const Variant& variant = scene.has_textures() ? textured_ : plain_;
   variant.program->use();
   variant.clip_from_world = view.clip_from_world;
@@ -217,27 +226,32 @@ void ShadowMapsPass::draw(const DeviceScene& scene, const View& view, int layer)
   glDisable(GL_DEPTH_TEST);
 }
 
-void ShadowMapsPass::filter(int layers) {
-  if (filter_px_ <= 1 || layers == 0) return;
-  const auto pass = [&](const gl::Texture& from, const gl::Texture& to, glm::ivec2 direction) {
-    from.bind(0);
-    to.bind_image(0, GL_WRITE_ONLY);
-    filter_direction_ = direction;
-    filter_radius_ = filter_px_ / 2;
-    const glm::ivec2 size = to.size_px();
-    filter_program_->use();
-    glDispatchCompute(static_cast<GLuint>((size.x + 63) / 64), static_cast<GLuint>(size.y),
-                      static_cast<GLuint>(layers));
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  };
-  pass(maps_.moments, across_, {1, 0});
-  pass(across_, maps_.moments, {0, 1});
+void ShadowMapsPass::filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction,
+                                 int radius) {
+  from.bind(0);
+  to.bind();
+  filter_direction_ = direction;
+  filter_radius_ = radius;
+  filter_texel_size_ = 1.0f / glm::vec2(maps_.moments.size_px());
+  filter_program_->use();
+  full_screen_.draw_full_screen();
+}
+
+void ShadowMapsPass::filter_into(int layer) {
+  const gl::Framebuffer& target = layers_[static_cast<std::size_t>(layer)];
+  const int radius = filter_px_ <= 3 ? 0 : (filter_px_ + 1) / 4;  // in the map of half the side
+  if (radius == 0) return filter_pass(raw_, target, {0, 0}, 0);
+  filter_pass(raw_, half_framebuffers_[0], {0, 0}, 0);
+  filter_pass(half_[0], half_framebuffers_[1], {1, 0}, radius);
+  filter_pass(half_[1], target, {0, 1}, radius);
 }
 
 const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose) {
   const std::vector<View> views = place_lights(pose);
-  for (std::size_t layer = 0; layer < views.size(); ++layer) draw(scene, views[layer], static_cast<int>(layer));
-  filter(static_cast<int>(views.size()));
+  for (std::size_t layer = 0; layer < views.size(); ++layer) {
+    draw(scene, views[layer]);
+    filter_into(static_cast<int>(layer));
+  }
   return maps_;
 }
 

@@ -13,7 +13,7 @@ namespace lightwell {
 
 /// Punctual lights and the moments of their depth, as shaders/lights.glsl reads them.
 struct ShadowMaps {
-  gl::Texture moments;  // RG32F, one layer a light (six a point light)
+  gl::Texture moments;  // RG32F, one layer a light (six a point light); half the rendered side unless unfiltered
   gl::Buffer lights;
   void bind() const;
 };
@@ -22,7 +22,9 @@ class ShadowMapsPass {
  public:
   explicit ShadowMapsPass(gl::ShaderLibrary& shaders);
 
-  /// A map's side and its box filter's width in pixels.
+  /// The side a light's view is rendered at, and the width of the box filter over it, in pixels. A filter of 2 or 3
+  /// averages 2 x 2 pixels into a map of half the side, a wider one blurs that map as well; its bilinear sampling
+  /// does the rest.
   void resize(int size_px, int filter_px, int layers);
 
   /// Number of layers that `pose`'s lights need; lights beyond MAX_SHADOW_LAYERS cast no shadow,
@@ -45,16 +47,21 @@ class ShadowMapsPass {
   };
   std::vector<View> place_lights(const Pose& pose);
   float cube_tangent() const;
-  void draw(const DeviceScene& scene, const View& view, int layer);
-  void filter(int layers);
+  void draw(const DeviceScene& scene, const View& view);
+  void filter_into(int layer);
+  void filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction, int radius);
 
   Variant plain_, textured_;
   gl::ProgramPtr filter_program_;
   gl::Uniform<glm::ivec2> filter_direction_;
   gl::Uniform<int> filter_radius_;
+  gl::Uniform<glm::vec2> filter_texel_size_;
+  gl::EmptyVertexArray full_screen_;
   ShadowMaps maps_;
-  gl::Texture across_, depth_;
-  std::vector<gl::Framebuffer> framebuffers_;
+  gl::Texture raw_, depth_;        // one light's view, before it is filtered into its layer
+  gl::Texture half_[2];            // between the passes of a wide filter
+  gl::Framebuffer raw_framebuffer_, half_framebuffers_[2];
+  std::vector<gl::Framebuffer> layers_;
   int filter_px_ = 1;
 };
 

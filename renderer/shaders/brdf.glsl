@@ -45,18 +45,21 @@ float ggx_visibility(float cos_out, float cos_in, float alpha) {
   return 0.5 / max(out_term + in_term, 1e-9);
 }
 
-// f * cos(theta_in) for directions in the frame of the normal (+Z); zero below the surface.
-vec3 brdf_times_cosine(Brdf brdf, vec3 out_direction, vec3 in_direction) {
-  const float cos_out = out_direction.z;
-  const float cos_in = in_direction.z;
-  if (cos_out <= 0.0 || cos_in <= 0.0) return vec3(0.0);
-  const vec3 half_vector = normalize(out_direction + in_direction);
-  const float weight = schlick_weight(dot(out_direction, half_vector));
+// f * cos(theta_in) from the cosines of the directions with the normal, of the half vector with the normal, and of the
+// half vector with the directions; zero below the surface.
+vec3 brdf_times_cosine(Brdf brdf, float cos_out, float cos_in, float cos_half, float cos_difference) {
+  const float weight = schlick_weight(cos_difference);
   const vec3 fresnel = mix(brdf.f0, vec3(brdf.f90), weight);
   const float fresnel_dielectric = mix(brdf.f0_dielectric, brdf.f90_dielectric, weight);
-  const vec3 diffuse = (1.0 - fresnel_dielectric) * brdf.diffuse_albedo * (1.0 / kPi);
-  const float specular = ggx_distribution(half_vector.z, brdf.alpha) * ggx_visibility(cos_out, cos_in, brdf.alpha);
-  return (diffuse + fresnel * specular) * cos_in;
+  const vec3 diffuse = (1.0 - fresnel_dielectric) * (1.0 / kPi) * brdf.diffuse_albedo;
+  const float specular = ggx_distribution(cos_half, brdf.alpha) * ggx_visibility(cos_out, cos_in, brdf.alpha);
+  return cos_out > 0.0 && cos_in > 0.0 ? (diffuse + fresnel * specular) * cos_in : vec3(0.0);
+}
+
+// The same for directions in the frame of the normal (+Z).
+vec3 brdf_times_cosine(Brdf brdf, vec3 out_direction, vec3 in_direction) {
+  const vec3 half_vector = normalize(out_direction + in_direction);
+  return brdf_times_cosine(brdf, out_direction.z, in_direction.z, half_vector.z, dot(out_direction, half_vector));
 }
 
 // Share of samples given to the specular lobe: by the luminance each lobe reflects.

@@ -1,8 +1,6 @@
 // One scene-referred picture: emission and direct light through the variance shadow maps (thesis 4.1), and the indirect
 // map scaled up bilinearly (thesis 5.3) and multiplied with the directional albedo it was divided by; or one of the
-// views. Averages with earlier frames.
-layout(local_size_x = 8, local_size_y = 8) in;
-
+// views. Blending averages with earlier frames.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
@@ -12,12 +10,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 
-layout(rgba32f, binding = 0) uniform image2D picture;  // a: share of lit surface (not background, not unlit)
+layout(location = 0) out vec4 picture;  // a: 1 on lit surfaces, 0 on the background, -1 on unlit surfaces
 layout(binding = UNIT_IMAGE_B) uniform sampler2D indirect_map;
 layout(binding = UNIT_IMAGE_C) uniform sampler2D occlusion_distance;
 
-uniform int view;          // ViewKind
-uniform int frame_number;  // 0: first of an accumulation
+uniform int view;  // ViewKind
 
 const int kFinal = 0, kDirect = 1, kIndirect = 2, kAlbedo = 3, kNormal = 4, kDepth = 5, kOcclusionDistance = 6;
 
@@ -56,15 +53,10 @@ vec3 background(vec2 position_px) {
 #endif
 
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, camera.size_px.xy))) return;
-  const vec2 position_px = vec2(pixel) + 0.5;
+  const ivec2 pixel = ivec2(gl_FragCoord.xy);
   const GBufferPoint point = g_buffer_point(pixel);
   const bool unlit = texelFetch(g_emission, pixel, 0).a > 0.5;
   // Unlit surfaces show their colour as it is, whatever the exposure: marked by a negative share.
-  vec4 value = point.valid
-                   ? vec4(surface_value(pixel, point, position_px / vec2(camera.size_px.xy)), unlit ? -1.0 : 1.0)
-                   : vec4(background(position_px), 0.0);
-  if (frame_number > 0) value = mix(imageLoad(picture, pixel), value, 1.0 / float(frame_number + 1));
-  imageStore(picture, pixel, value);
+  picture = point.valid ? vec4(surface_value(pixel, point, gl_FragCoord.xy / vec2(camera.size_px.xy)), unlit ? -1.0 : 1.0)
+                        : vec4(background(gl_FragCoord.xy), 0.0);
 }
