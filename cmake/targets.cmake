@@ -29,3 +29,10 @@ function(lightwell_library name)
   lightwell_flags(${name})
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
+
+# For code whose own speed nobody notices and whose templates take long to optimise: JSON, the command line, tests.
+function(lightwell_compile_quickly target)
+  if(CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo)
+    target_compile_options(${target} PRIVATE -O1)
+  endif()
+endfunction()

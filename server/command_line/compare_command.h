@@ -1,10 +1,13 @@
 // `lightwell compare A B`: how far picture A is from the reference B.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "server/command_line/exit_code.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lightwell {
 

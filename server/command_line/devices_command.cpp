@@ -1,5 +1,6 @@
 #include "server/command_line/devices_command.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 

@@ -1,9 +1,11 @@
 // `lightwell devices`: what was found, what was chosen and why.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "server/command_line/exit_code.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lightwell {
 

@@ -1,7 +1,6 @@
 // `lightwell render SCENE -o FILE`: pictures without a server.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
@@ -9,6 +8,10 @@
 #include "server/command_line/camera_argument.h"
 #include "server/command_line/exit_code.h"
 #include "server/command_line/parse_values.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lightwell {
 

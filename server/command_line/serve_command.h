@@ -1,10 +1,12 @@
 // `lightwell serve`: the server's options.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "server/command_line/exit_code.h"
 #include "server/serve.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lightwell {
 

@@ -1,10 +1,13 @@
 // How a picture is made: the options that `serve` and `render` share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "renderer/renderer.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lightwell {
 
