@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kMostRays = 1u << 20;
 
 std::uint32_t directions_per_batch(const IndirectMapGrid& grid, int samples) {
-  return std::clamp(kMostRays / grid.pixels(), 1u, static_cast<std::uint32_t>(samples));
+  return std::clamp(kMostRays / grid.slots(), 1u, static_cast<std::uint32_t>(samples));
 }
 
 // The van der Corput and Halton points: where in its block the representative pixel lies in the n-th frame.
@@ -61,7 +61,7 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
                            ShadowMapsPass::layers_for(frame.pose));
   compose_pass_.resize(frame.size_px);
-  const std::uint32_t most_rays = grid.pixels() * directions_per_batch(grid, frame.settings.samples);
+  const std::uint32_t most_rays = grid.slots() * directions_per_batch(grid, frame.settings.samples);
   directions_pass_.resize(most_rays);
   hit_light_pass_.resize(most_rays);
   occlusion_.hits.reserve(std::uint64_t{most_rays} * sizeof(Hit));

@@ -25,7 +25,7 @@ const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMap
                                       std::uint32_t count, std::uint32_t seed) {
   directions_.first = first;
   directions_.count = count;
-  directions_.ray_count = grid.pixels() * count;
+  directions_.ray_count = grid.slots() * count;
   g_buffer.bind();
   directions_.rays.bind_storage(BINDING_RAYS);
   directions_.weights.bind_storage(BINDING_WEIGHTS);
@@ -34,7 +34,7 @@ const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMap
   count_ = count;
   seed_ = seed;
   constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp
-  program_->dispatch(grid.pixels() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
+  program_->dispatch(grid.slots() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return directions_;
 }

@@ -9,7 +9,7 @@
 namespace lightwell {
 
 /// A batch of directions for every pixel of the indirect map, as rays from its representative's surface.
-/// Ray j * pixels + pixel is direction first + j of that pixel.
+/// Ray j * slots + slot is direction first + j of the pixel in that slot (shaders/indirect_map.glsl).
 struct Directions {
   gl::Buffer rays;                                     // Ray
   gl::BufferTexture ray_texels{"rays", GL_RGBA32F};  // the same, 2 texels a ray

@@ -26,15 +26,15 @@ uniform int literal;
 void main() {
   const ivec2 map_pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(map_pixel, indirect_size_px))) return;
-  const uint pixel_count = uint(indirect_size_px.x * indirect_size_px.y);
-  const uint pixel = uint(map_pixel.y * indirect_size_px.x + map_pixel.x);
+  const uint slots = slot_count();
+  const uint slot = slot_of_pixel(map_pixel);
   const GBufferPoint point = g_buffer_point(representative_pixel(map_pixel));
   const float cos_out = max(dot(point.normal_ws, point.to_camera_ws), 0.0);
 
   vec3 sum = vec3(0.0);
   vec2 distance_sum = vec2(0.0);
   for (uint j = 0u; j < direction_count; ++j) {
-    const uint index = j * pixel_count + pixel;
+    const uint index = j * slots + slot;
     const uvec2 packed_weight = weights[index];
     const uvec2 packed_radiance = hit_radiance[index];
     const vec3 radiance = vec3(unpackHalf2x16(packed_radiance.x), unpackHalf2x16(packed_radiance.y).x);

@@ -13,7 +13,11 @@ struct IndirectMapGrid {
   glm::ivec2 picture_size_px{1};
   glm::vec2 jitter{0.5f};  // where in its block the representative pixel lies, [0, 1)
 
-  std::uint32_t pixels() const { return static_cast<std::uint32_t>(map_size_px.x * map_size_px.y); }
+  /// Places for rays of one direction: whole blocks of 16 x 16 pixels, as shaders/indirect_map.glsl orders them.
+  std::uint32_t slots() const {
+    const glm::ivec2 blocks = (map_size_px + 15) / 16;
+    return static_cast<std::uint32_t>(blocks.x * blocks.y * 256);
+  }
 
   /// A map whose longer side has `size` pixels (never more than the picture) and the picture's shape.
   static IndirectMapGrid over(glm::ivec2 picture_size_px, int size) {

@@ -7,3 +7,32 @@ uniform vec2 indirect_jitter;   // [0, 1): where in its block the representative
 ivec2 representative_pixel(ivec2 map_pixel) {
   return ivec2((vec2(map_pixel) + indirect_jitter) * indirect_scale);
 }
+
+// Interleaved sampling (Keller and Heidrich 2001): the pixels of a 4 x 4 tile have different directions, pixels at the same
+// place of their tiles the same. Slots put 16 of the latter, from 4 x 4 tiles, side by side: their rays run together,
+// which a tracer of packets rewards, and neighbours stay uncorrelated, which a filter does.
+const int kTileSide = 4;
+const int kBlockSide = 16;  // 4 x 4 tiles
+
+// Slots are those of whole blocks; some lie outside the map.
+uint slot_count() {
+  const ivec2 blocks = (indirect_size_px + kBlockSide - 1) / kBlockSide;
+  return uint(blocks.x * blocks.y * kBlockSide * kBlockSide);
+}
+
+ivec2 pixel_of_slot(uint slot) {
+  const int blocks_x = (indirect_size_px.x + kBlockSide - 1) / kBlockSide;
+  const int block = int(slot) / (kBlockSide * kBlockSide);
+  const int place = int(slot) / 16 % 16;  // in its tile
+  const int tile = int(slot) % 16;        // in its block
+  return ivec2(block % blocks_x, block / blocks_x) * kBlockSide + ivec2(tile % 4, tile / 4) * kTileSide +
+         ivec2(place % 4, place / 4);
+}
+
+uint slot_of_pixel(ivec2 pixel) {
+  const int blocks_x = (indirect_size_px.x + kBlockSide - 1) / kBlockSide;
+  const ivec2 block = pixel / kBlockSide;
+  const ivec2 tile = pixel % kBlockSide / kTileSide;
+  const ivec2 place = pixel % kTileSide;
+  return uint(((block.y * blocks_x + block.x) * 16 + place.y * 4 + place.x) * 16 + tile.y * 4 + tile.x);
+}
