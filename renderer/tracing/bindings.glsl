@@ -1,0 +1,14 @@
+// Storage bindings of the compute tracer, read by C++ and GLSL alike: preprocessor lines only.
+#define TRACE_BINDING_RAYS 0
+#define TRACE_BINDING_RESULTS 1
+#define TRACE_BINDING_NODES 2
+#define TRACE_BINDING_TRIANGLES 3
+#define TRACE_BINDING_GROUPS 4
+#define TRACE_BINDING_COVERAGE 5
+#define TRACE_BINDING_CORNER_UVS 6
+#define TRACE_BINDING_ALPHA 7
+
+#define TRACE_GROUP_SIZE 64
+// Levels of inner nodes, each of which may leave one entry on the traversal stack.
+#define TRACE_TOP_LEVELS 24
+#define TRACE_BOTTOM_LEVELS 40

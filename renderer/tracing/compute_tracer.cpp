@@ -1,0 +1,70 @@
+// The tracer that never leaves the device: trace.comp over hierarchies built on the CPU.
+#include "renderer/check.h"
+#include "renderer/gl/program.h"
+#include "renderer/tracing/bindings.glsl"
+#include "renderer/tracing/device_hierarchies.h"
+#include "renderer/tracing/tracer.h"
+
+namespace lightwell {
+namespace {
+
+// One build of trace.comp.
+class TraceProgram {
+ public:
+  TraceProgram(gl::ShaderLibrary& shaders, bool any_hit, bool coverage)
+      : program_(shaders.compute("tracing/trace.comp",
+                                 {any_hit ? "ANY_HIT 1" : "ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0"})),
+        ray_count_(program_, "ray_count"),
+        top_root_(program_, "top_root") {}
+
+  void run(const gl::Buffer& rays, std::uint32_t count, const gl::Buffer& results,
+           const DeviceHierarchies& hierarchies) const {
+    hierarchies.bind();
+    rays.bind_storage(TRACE_BINDING_RAYS);
+    results.bind_storage(TRACE_BINDING_RESULTS);
+    ray_count_ = count;
+    top_root_ = hierarchies.top_root();
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    program_->dispatch(count, TRACE_GROUP_SIZE);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  }
+
+ private:
+  gl::ProgramPtr program_;
+  gl::Uniform<std::uint32_t> ray_count_, top_root_;
+};
+
+class ComputeTracer final : public Tracer {
+ public:
+  std::string_view name() const override { return "compute"; }
+
+  void update(const TraceScene& scene) override { hierarchies_.update(scene); }
+
+  void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits) override {
+    LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Ray), <=, rays.size_bytes());
+    LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Hit), <=, hits.size_bytes());
+    (hierarchies_.needs_coverage() ? covered_closest_hit_ : closest_hit_).run(rays, count, hits, hierarchies_);
+  }
+
+  void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) override {
+    LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Ray), <=, rays.size_bytes());
+    LIGHTWELL_CHECK_OP((std::uint64_t{count} + 31) / 32 * sizeof(std::uint32_t), <=, visible.size_bytes());
+    (hierarchies_.needs_coverage() ? covered_any_hit_ : any_hit_).run(rays, count, visible, hierarchies_);
+  }
+
+  std::uint64_t memory_bytes() const override { return hierarchies_.memory_bytes(); }
+
+ private:
+  gl::ShaderLibrary shaders_;
+  TraceProgram closest_hit_{shaders_, false, false}, covered_closest_hit_{shaders_, false, true};
+  TraceProgram any_hit_{shaders_, true, false}, covered_any_hit_{shaders_, true, true};
+  DeviceHierarchies hierarchies_;
+};
+
+}  // namespace
+
+std::unique_ptr<Tracer> make_compute_tracer() {
+  return std::make_unique<ComputeTracer>();
+}
+
+}  // namespace lightwell
