@@ -14,9 +14,9 @@ layout(local_size_x = 64) in;
 layout(std430, binding = BINDING_RAYS) writeonly buffer Rays { Ray rays[]; };
 layout(std430, binding = BINDING_WEIGHTS) writeonly buffer Weights { uvec2 weights[]; };
 
-uniform uint first_direction;
+layout(binding = UNIT_SAMPLE_POINTS) uniform samplerBuffer sample_points;  // 16 a direction, see sample_points.comp
+
 uniform uint direction_count;
-uniform uint seed;
 
 const uint kDirectionsPerInvocation = 8u;
 
@@ -29,15 +29,14 @@ void main() {
   const ivec2 map_pixel = pixel_of_slot(slot);
   const bool inside = all(lessThan(map_pixel, indirect_size_px));
   const GBufferPoint point = g_buffer_point(representative_pixel(min(map_pixel, indirect_size_px - 1)));
-  const uint pixel_seed = hash(uvec3(map_pixel % kTileSide, seed));
+  const int place = int(slot) / 16 % 16;
   const mat3 frame = frame_around(point.normal_ws);
   const vec3 out_direction = point.to_camera_ws * frame;
   const vec3 origin_ws = point.position_ws + point.geometric_normal_ws * ray_offset_m(point);
 
   for (uint j = first; j < min(first + kDirectionsPerInvocation, direction_count); ++j) {
-    const uint number = first_direction + j;
-    const float u_lobe = sobol_1d(number, pixel_seed ^ 0x9e3779b9u);
-    const vec3 in_direction = sample_brdf(point.brdf, out_direction, sobol_2d(number, pixel_seed), u_lobe);
+    const vec3 u = texelFetch(sample_points, int(16u * j) + place).xyz;
+    const vec3 in_direction = sample_brdf(point.brdf, out_direction, u.xy, u.z);
     const vec3 in_ws = frame * in_direction;
     const float pdf = brdf_pdf(point.brdf, out_direction, in_direction);
     const bool active_ray = inside && point.valid && pdf > 0.0 && dot(in_ws, point.geometric_normal_ws) > 0.0;

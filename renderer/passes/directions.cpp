@@ -6,19 +6,36 @@
 namespace lightwell {
 
 DirectionsPass::DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
-    : program_(shaders.compute("passes/directions.comp")),
+    : points_program_(shaders.compute("passes/sample_points.comp")),
+      points_first_(points_program_, "first_direction"),
+      points_count_(points_program_, "direction_count"),
+      points_seed_(points_program_, "seed"),
+      points_("sample points", 0),
+      point_texels_("sample points", GL_RGBA32F),
+      program_(shaders.compute("passes/directions.comp")),
       grid_(program_),
-      first_(program_, "first_direction"),
-      count_(program_, "direction_count"),
-      seed_(program_, "seed") {
+      count_(program_, "direction_count") {
   directions_.rays = gl::Buffer("rays", 0, buffers);
   directions_.weights = gl::Buffer("direction weights", 0);
+}
+
+// The table of random numbers that all tiles of the indirect map share.
+void DirectionsPass::make_sample_points(std::uint32_t first, std::uint32_t count, std::uint32_t seed) {
+  constexpr std::uint32_t kPlaces = 16;
+  if (points_.reserve(std::uint64_t{kPlaces} * count * sizeof(glm::vec4)) || first == 0) point_texels_.attach(points_);
+  points_.bind_storage(BINDING_OUTPUT);
+  points_first_ = first;
+  points_count_ = count;
+  points_seed_ = seed;
+  points_program_->dispatch(kPlaces * count);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void DirectionsPass::resize(std::uint32_t most_rays) {
   directions_.rays.reserve(std::uint64_t{most_rays} * sizeof(Ray));
   directions_.ray_texels.attach(directions_.rays);
   directions_.weights.reserve(std::uint64_t{most_rays} * 8);
+  directions_.weight_texels.attach(directions_.weights);
 }
 
 const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, std::uint32_t first,
@@ -26,13 +43,13 @@ const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMap
   directions_.first = first;
   directions_.count = count;
   directions_.ray_count = grid.slots() * count;
+  make_sample_points(first, count, seed);
   g_buffer.bind();
+  point_texels_.bind(UNIT_SAMPLE_POINTS);
   directions_.rays.bind_storage(BINDING_RAYS);
   directions_.weights.bind_storage(BINDING_WEIGHTS);
   grid_.set(grid);
-  first_ = first;
   count_ = count;
-  seed_ = seed;
   constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp
   program_->dispatch(grid.slots() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -14,6 +14,7 @@ struct Directions {
   gl::Buffer rays;                                     // Ray
   gl::BufferTexture ray_texels{"rays", GL_RGBA32F};  // the same, 2 texels a ray
   gl::Buffer weights;  // 4 halves: f cos(theta) / pdf, and 1 where there is a ray
+  gl::BufferTexture weight_texels{"direction weights", GL_RG32UI};
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t ray_count = 0;
@@ -28,9 +29,15 @@ class DirectionsPass {
                         std::uint32_t seed);
 
  private:
+  void make_sample_points(std::uint32_t first, std::uint32_t count, std::uint32_t seed);
+
+  gl::ProgramPtr points_program_;
+  gl::Uniform<std::uint32_t> points_first_, points_count_, points_seed_;
+  gl::Buffer points_;
+  gl::BufferTexture point_texels_;
   gl::ProgramPtr program_;
   IndirectMapUniforms grid_;
-  gl::Uniform<std::uint32_t> first_, count_, seed_;
+  gl::Uniform<std::uint32_t> count_;
   Directions directions_;
 };
 

@@ -9,12 +9,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
-#include "shaders/ray.glsl"
 #include "shaders/indirect_map.glsl"
 
-layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = BINDING_WEIGHTS) readonly buffer Weights { uvec2 weights[]; };
-layout(std430, binding = BINDING_HIT_RADIANCE) readonly buffer HitRadiance { uvec2 hit_radiance[]; };
+layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit, distance first
+layout(binding = UNIT_WEIGHTS) uniform usamplerBuffer weights;
+layout(binding = UNIT_HIT_RADIANCE) uniform usamplerBuffer hit_radiance;
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
 
@@ -34,12 +33,12 @@ void main() {
   vec3 sum = vec3(0.0);
   vec2 distance_sum = vec2(0.0);
   for (uint j = 0u; j < direction_count; ++j) {
-    const uint index = j * slots + slot;
-    const uvec2 packed_weight = weights[index];
-    const uvec2 packed_radiance = hit_radiance[index];
+    const int index = int(j * slots + slot);
+    const uvec2 packed_weight = texelFetch(weights, index).xy;
+    const uvec2 packed_radiance = texelFetch(hit_radiance, index).xy;
     const vec3 radiance = vec3(unpackHalf2x16(packed_radiance.x), unpackHalf2x16(packed_radiance.y).x);
     const vec2 weight_zw = unpackHalf2x16(packed_weight.y);
-    const float t = hits[index].t;
+    const float t = uintBitsToFloat(texelFetch(hit_words, 5 * index).x);
     const vec3 literal_weight = vec3(weight_zw.y / max(t * t, 1e-12));
     sum += radiance * (literal == 1 ? literal_weight : vec3(unpackHalf2x16(packed_weight.x), weight_zw.x));
     distance_sum += t >= 0.0 ? vec2(t, 1.0) : vec2(0.0);

@@ -31,9 +31,9 @@ void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const
                      const OcclusionMap& occlusion, const HitRadiance& radiance, std::uint32_t total_directions,
                      bool literal, IndirectMap& map) {
   g_buffer.bind();
-  directions.weights.bind_storage(BINDING_WEIGHTS);
-  occlusion.hits.bind_storage(BINDING_HITS);
-  radiance.radiance.bind_storage(BINDING_HIT_RADIANCE);
+  directions.weight_texels.bind(UNIT_WEIGHTS);
+  occlusion.hit_texels.bind(UNIT_HITS);
+  radiance.texels.bind(UNIT_HIT_RADIANCE);
   map.image.bind_image(0, GL_READ_WRITE);
   occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
   grid_.set(grid);

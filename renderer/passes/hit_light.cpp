@@ -17,6 +17,7 @@ HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
 
 void HitLightPass::resize(std::uint32_t most_rays) {
   radiance_.radiance.reserve(std::uint64_t{most_rays} * 8);
+  radiance_.texels.attach(radiance_.radiance);
 }
 
 void HitLightPass::bind(const Directions& directions, const OcclusionMap& occlusion) const {
@@ -40,7 +41,7 @@ const HitRadiance& HitLightPass::run(const DeviceScene& scene, const Directions&
   Variant& variant = variant_for(scene, literal);
   variant.ray_count = directions.ray_count;
   variant.program->dispatch(directions.ray_count);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return radiance_;
 }
 
@@ -51,7 +52,7 @@ const HitRadiance& HitLightPass::run_from_screen(const GBuffer& g_buffer, const 
   previous_bounce.bind(UNIT_IMAGE_A);
   screen_ray_count_ = directions.ray_count;
   screen_program_->dispatch(directions.ray_count);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return radiance_;
 }
 

@@ -19,6 +19,7 @@ struct OcclusionMap {
 /// Radiance arriving along each ray of a batch.
 struct HitRadiance {
   gl::Buffer radiance;  // 4 halves a ray
+  gl::BufferTexture texels{"hit radiance", GL_RG32UI};
 };
 
 class HitLightPass {
