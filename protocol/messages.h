@@ -37,7 +37,7 @@ struct SceneCamera {
 struct FreeCamera {
   Vector3 eye{0, 0, 0};
   Vector3 target{0, 0, -1};
-  double yfov = 0.8;            // radians, in (0, pi)
+  double yfov = 0.8;            // radians, in (0, 3.14]
   std::optional<double> znear;  // metres, above 0
 
   bool operator==(const FreeCamera&) const = default;

@@ -1,7 +1,6 @@
 #include "protocol/read_values.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "protocol/names.h"
 
@@ -65,7 +64,7 @@ void read_free_camera(const Value& value, FreeCamera& out) {
   ObjectReader object(value);
   object.required("eye", camera.eye, read_numbers<3>);
   object.required("target", camera.target, read_numbers<3>);
-  object.with_default("yfov", camera.yfov, ReadNumber{0, std::numbers::pi - 1e-3, true});
+  object.with_default("yfov", camera.yfov, ReadNumber{0, 3.14, true});
   object.optional("znear", camera.znear, ReadNumber{0, kLargestFloat, true});
   object.finish();
   if (camera.eye == camera.target) value.fail("eye and target are the same point");

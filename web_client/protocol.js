@@ -187,7 +187,7 @@ const scene_name = matching(/^[a-z0-9_-]{1,64}$/, "a scene's name, 1 to 64 of a-
 
 const free_camera = (value, pointer, strict) => {
   object({ eye: vector, target: vector }, {
-    yfov: number(0, Math.PI - 1e-3, true), znear: number(0, largest_float, true),
+    yfov: number(0, 3.14, true), znear: number(0, largest_float, true),
   })(value, pointer, strict);
   if (value.eye.every((coordinate, axis) => coordinate === value.target[axis])) {
     throw new ProtocolError("eye and target are the same point", pointer);
