@@ -28,6 +28,18 @@ TEST(Patch, SaysWhichEditWasRefused) {
   EXPECT_EQ(applied.error().message(), "/nodes/0/name: edit 1: must be a string of at most 1024 bytes, not 1");
 }
 
+TEST(Patch, CountsWhichEditWasRefused) {
+  Scene scene = make_edit_scene();
+  std::size_t refused = 99;
+  const Json good = edit("replace", "/nodes/0/name", "x");
+  EXPECT_FALSE(apply_edits(scene, patch(good, good, removal("/nodes/6"), good), {}, &refused).ok());
+  EXPECT_EQ(refused, 2u);
+  EditLimits limits;
+  limits.max_triangles = 1;
+  EXPECT_FALSE(apply_edits(scene, patch(edit("add", "/nodes/-", {{"mesh", 0}})), limits, &refused).ok());
+  EXPECT_EQ(refused, 1u);
+}
+
 TEST(Patch, OperationsApplyInOrder) {
   Scene scene = make_edit_scene();
   apply_or_fail(scene,

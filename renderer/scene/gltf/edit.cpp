@@ -30,6 +30,14 @@ Status apply_one(Editing& editing, const Json& json) {
   return affordable ? apply(editing, *operation) : affordable;
 }
 
+/// A patch may not make a scene larger than it may be; one that is already may still be edited.
+Status check_triangles(const Scene& before, const Editing& after) {
+  const std::uint64_t triangles = count_triangles(after.scene), most = after.limits.max_triangles;
+  if (triangles <= most || triangles <= count_triangles(before)) return Done{};
+  return Error{ErrorKind::kTooLarge, "",
+               "the patch makes it " + std::to_string(triangles) + " triangles; the most is " + std::to_string(most)};
+}
+
 Json describe_all(const ObjectKind& kind, const Scene& scene) {
   Json array = Json::array();
   for (std::size_t i = 0; i < kind.count(scene); ++i) array.push_back(describe(kind, scene, i));
@@ -78,22 +86,21 @@ Json describe_animations(const Scene& scene) {
 
 }  // namespace
 
-Status apply_edits(Scene& scene, const nlohmann::json& patch, const EditLimits& limits) {
+Status apply_edits(Scene& scene, const nlohmann::json& patch, const EditLimits& limits, std::size_t* refused) {
+  if (refused) *refused = patch.size();
   if (!patch.is_array()) return invalid_input("", "a JSON Patch is an array, not " + in_words(patch));
   if (patch.size() > limits.max_operations)
     return Error{ErrorKind::kTooLarge, "", "a patch has at most " + std::to_string(limits.max_operations) + " edits"};
   Editing editing(scene, limits);
   for (std::size_t i = 0; i < patch.size(); ++i) {
     const Status applied = apply_one(editing, patch[i]);
-    if (!applied) return in_edit(i, applied.error());
+    if (applied) continue;
+    if (refused) *refused = i;
+    return in_edit(i, applied.error());
   }
-  const std::uint64_t triangles = count_triangles(editing.scene);
-  if (triangles > limits.max_triangles && triangles > count_triangles(scene))
-    return Error{ErrorKind::kTooLarge, "",
-                 "the patch makes it " + std::to_string(triangles) + " triangles; the most is " +
-                     std::to_string(limits.max_triangles)};
-  scene = std::move(editing.scene);
-  return Done{};
+  const Status small_enough = check_triangles(scene, editing);
+  if (small_enough) scene = std::move(editing.scene);
+  return small_enough;
 }
 
 nlohmann::json describe_scene(const Scene& scene) {

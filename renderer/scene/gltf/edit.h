@@ -46,7 +46,11 @@ struct EditLimits {
 /// become none. A new node is a root; `/nodes/3/children/-` makes it a child of node 3. A child that is taken from its
 /// parent, or whose parent is removed, stays in /nodes but has no place in the scene, as in glTF, until it is made a
 /// child or a root again. The joints of a skin cannot be removed.
-Status apply_edits(Scene& scene, const nlohmann::json& patch, const EditLimits& limits = {});
+///
+/// `refused`, if given, is set on an error: to the index of the edit that failed, or to patch.size() if it was no
+/// single one.
+Status apply_edits(Scene& scene, const nlohmann::json& patch, const EditLimits& limits = {},
+                   std::size_t* refused = nullptr);
 
 /// The scene's object model as glTF JSON (scenes, nodes, materials, lights, cameras, the environment; of meshes, skins,
 /// textures and animations the names, materials and targets; no binary data), for clients that want to know what can be
