@@ -38,7 +38,7 @@ Scene make_atrium() {
   scene.environment().horizon_radiance = {3.6f, 4.0f, 4.4f};
   scene.environment().ground_radiance = {0.0f, 0.0f, 0.0f};
 
-  scene.camera_node("hall", {2.25f, 1.65f, 6.85f}, {-1.0f, 2.25f, -2.4f}, glm::radians(60.0f));
+  scene.camera_node("hall", {2.25f, 1.65f, 6.85f}, {-1.0f, 2.42f, -2.4f}, glm::radians(60.0f));
   scene.camera_node("aisle", {-4.4f, 1.6f, 6.8f}, {-1.0f, 2.0f, -1.0f}, glm::radians(55.0f));
   scene.camera_node("looking up", {-0.6f, 0.9f, -0.6f}, {0.2f, 6.5f, -2.9f}, glm::radians(75.0f));
   return std::move(scene).finish();

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "renderer/scene/builtin/atrium.h"
 #include "renderer/scene/builtin/shapes.h"
@@ -37,14 +39,14 @@ MeshBuilder well_walls() {
 MeshBuilder hall_walls() {
   MeshBuilder mesh;
   mesh.box({kLeft, 0.0f, kHallFront}, {kRight, kVaultTop, kHallFront + 1.0f});  // behind the camera
-  mesh.box({kLeft, 0.0f, -1.0f}, {-kRight, 5.4f, 0.0f});                        // end of the aisle
+  mesh.box({kLeft, 0.0f, -1.0f}, {-kRight, 4.7f, 0.0f});                        // end of the aisle
   return mesh;
 }
 
 /// The aisle's ceiling stops short of its outer wall: daylight washes down there.
 MeshBuilder aisle_ceiling() {
   MeshBuilder mesh;
-  mesh.box({-4.85f, kVaultSpring, 0.0f}, {-kRight, 5.4f, kHallFront});
+  mesh.box({-4.72f, kVaultSpring, 0.0f}, {-kRight, 4.6f, kHallFront});
   return mesh;
 }
 
@@ -54,6 +56,29 @@ MeshBuilder vault() {
   add_arch(outline, {0.0f, kVaultSpring}, kHalfWidth, 28);
   outline.insert(outline.end(), {{kRight, kVaultSpring}, {kRight, kVaultTop}});
   return extrude(outline, kHallFront);
+}
+
+/// Arches that carry the vault, one over each column, and the moulding it springs from.
+MeshBuilder ribs() {
+  constexpr float kDepth = 0.14f, kWidth = 0.30f;
+  std::vector<glm::vec2> outline;
+  add_arch(outline, {0.0f, kVaultSpring}, kHalfWidth + 0.02f, 28);
+  std::vector<glm::vec2> inner;
+  add_arch(inner, {0.0f, kVaultSpring}, kHalfWidth - kDepth, 28);
+  outline.insert(outline.end(), inner.rbegin(), inner.rend());
+  std::reverse(outline.begin(), outline.end());
+  const MeshBuilder rib = extrude(outline, kWidth);
+  MeshBuilder mesh;
+  for (int i = 0; i < kBays; ++i) {
+    const float z = i == 0 ? 0.02f : kBay * static_cast<float>(i) - 0.5f * kWidth;
+    mesh.append(rib, glm::translate(glm::mat4(1.0f), {0.0f, 0.0f, z}));
+  }
+  for (const float side : {-1.0f, 1.0f}) {
+    MeshBuilder moulding = bevelled_box({kHalfWidth - 0.17f, kVaultSpring - 0.16f, 0.015f},
+                                        {kHalfWidth + 0.1f, kVaultSpring + 0.03f, kHallFront + 0.1f}, 0.02f);
+    mesh.append(moulding, glm::scale(glm::mat4(1.0f), {side, 1.0f, 1.0f}));
+  }
+  return mesh;
 }
 
 /// The arches between hall and aisle, drawn in (z, y) and turned to stand along the hall.
@@ -116,7 +141,7 @@ MeshBuilder roof() {
 void add_building(SceneBuilder& scene) {
   const int lime = scene.material("lime plaster", plaster(256, {0.80f, 0.76f, 0.69f}, 0.05f), 4.0f, 0.95f);
   const int ochre = scene.material("ochre wash", plaster(256, {0.78f, 0.44f, 0.12f}, 0.10f), 4.0f, 0.9f);
-  const int turquoise = scene.material("turquoise wash", plaster(256, {0.22f, 0.46f, 0.52f}, 0.10f), 4.0f, 0.9f);
+  const int turquoise = scene.material("turquoise wash", plaster(256, {0.26f, 0.52f, 0.56f}, 0.10f), 4.0f, 0.9f);
   const int limestone = scene.material("limestone", {0.70f, 0.66f, 0.59f}, 0.75f);
   const int paving = scene.material("flagstones", flagstones(512, 5, 6, {0.62f, 0.57f, 0.50f}, 0.012f), 4.2f, 0.45f);
 
@@ -124,7 +149,7 @@ void add_building(SceneBuilder& scene) {
   floors.box({kLeft, -1.2f, 0.0f}, {kRight, 0.0f, kHallFront + 1.0f});
   floors.box({-kRight, -1.2f, -6.5f}, {kRight, kWellFloor, 0.0f});
   right_wall.box({kHalfWidth, 0.0f, 0.0f}, {kRight, kVaultSpring, kHallFront});
-  aisle_wall.box({kLeft, 0.0f, 0.0f}, {kAisleWall, 5.4f, kHallFront});
+  aisle_wall.box({kLeft, 0.0f, 0.0f}, {kAisleWall, 4.7f, kHallFront});
   scene.mesh_node("floors", {{floors, paving}});
   scene.mesh_node("well walls", {{well_walls(), lime}});
   scene.mesh_node("hall walls", {{hall_walls(), lime}});
@@ -134,6 +159,7 @@ void add_building(SceneBuilder& scene) {
   scene.mesh_node("hall wall", {{right_wall, ochre}});
   scene.mesh_node("aisle wall", {{aisle_wall, turquoise}});
   scene.mesh_node("arcade", {{arcade(), limestone}});
+  scene.mesh_node("ribs", {{ribs(), limestone}});
   scene.mesh_node("steps", {{steps(), limestone}});
 
   const int column_mesh = scene.mesh("column", {{column(), limestone}});

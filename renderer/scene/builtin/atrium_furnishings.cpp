@@ -45,23 +45,34 @@ MeshBuilder bowl() {
   return lathe(kProfile, 32);
 }
 
+/// A storage jar, its mouth open.
+MeshBuilder jar() {
+  constexpr glm::vec2 kProfile[] = {{0.0f, 0.0f},    {0.15f, 0.0f},  {0.15f, 0.0f},  {0.20f, 0.08f},   {0.29f, 0.26f},
+                                    {0.345f, 0.45f}, {0.34f, 0.60f}, {0.28f, 0.74f}, {0.19f, 0.83f},   {0.16f, 0.88f},
+                                    {0.165f, 0.93f}, {0.20f, 0.96f}, {0.20f, 0.98f}, {0.165f, 0.985f}, {0.13f, 0.94f},
+                                    {0.125f, 0.87f}, {0.16f, 0.80f}, {0.0f, 0.74f}};
+  return lathe(kProfile, 28);
+}
+
 }  // namespace
 
 void add_furnishings(SceneBuilder& scene) {
-  const int red = scene.material("red cloth", {0.60f, 0.035f, 0.025f}, 0.95f);
-  const int blue = scene.material("blue cloth", {0.035f, 0.11f, 0.52f}, 0.95f);
+  const int red = scene.material("red cloth", {0.62f, 0.035f, 0.025f}, 0.95f);
+  const int blue = scene.material("blue cloth", {0.035f, 0.12f, 0.54f}, 0.95f);
   const int iron = scene.material("iron", {0.08f, 0.075f, 0.07f}, 0.5f, 0.6f);
   const int oak = scene.material("oak", {0.34f, 0.19f, 0.09f}, 0.6f);
   const int glaze = scene.material("white glaze", {0.82f, 0.81f, 0.78f}, 0.25f);
+  const int terracotta = scene.material("terracotta", {0.56f, 0.23f, 0.11f}, 0.7f);
 
-  hang(scene, "red cloth", cloth(1.7f, 7.6f, 6.0f, 0.4f), 1.7f, red, iron,
-       {{-1.9f, 9.2f, -4.0f}, look_along({0.25f, 0, -1}), glm::vec3(1)});
-  hang(scene, "blue cloth", cloth(1.5f, 6.6f, 5.0f, 2.2f), 1.5f, blue, iron,
-       {{2.0f, 8.9f, -4.5f}, look_along({-0.2f, 0, -1}), glm::vec3(1)});
-  scene.mesh_node("bench", {{bench(), oak}}, {{2.6f, 0.0f, 1.9f}, glm::quat(1, 0, 0, 0), glm::vec3(1)});
-  scene.mesh_node("bowl", {{bowl(), glaze}}, {{2.6f, 0.47f, 1.5f}, glm::quat(1, 0, 0, 0), glm::vec3(1)});
-  scene.mesh_node("sphere", {{sphere(0.5f, 40, 20), glaze}},
-                  {{1.7f, 0.5f + kWellFloor, -3.0f}, glm::quat(1, 0, 0, 0), glm::vec3(1)});
+  const auto stand = [](const glm::vec3& at) { return Transform{at, glm::quat(1, 0, 0, 0), glm::vec3(1.0f)}; };
+  hang(scene, "red cloth", cloth(2.0f, 8.3f, 7.0f, 0.4f), 2.0f, red, iron,
+       {{-1.75f, 9.4f, -4.2f}, look_along({0.25f, 0, -1}), glm::vec3(1)});
+  hang(scene, "blue cloth", cloth(1.5f, 6.9f, 5.0f, 2.2f), 1.5f, blue, iron,
+       {{2.05f, 9.1f, -4.7f}, look_along({-0.2f, 0, -1}), glm::vec3(1)});
+  scene.mesh_node("bench", {{bench(), oak}}, stand({2.6f, 0.0f, 1.9f}));
+  scene.mesh_node("bowl", {{bowl(), glaze}}, stand({2.6f, 0.47f, 1.5f}));
+  scene.mesh_node("sphere", {{sphere(0.55f, 40, 20), glaze}}, stand({1.55f, kWellFloor + 0.55f, -3.3f}));
+  scene.mesh_node("jar", {{jar(), terracotta}}, stand({-2.45f, 0.0f, 0.95f}));
 }
 
 }  // namespace lightwell::builtin::atrium
