@@ -44,7 +44,8 @@ struct Pose {
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of all instances, world space; equal when there are none
 };
 
-/// The scene at `time_s` seconds (animations repeat; a negative time counts as 0). Without `time_s` the rest pose.
+/// The scene at `time_s` seconds (animations repeat; a negative time counts as 0).
+/// Hidden nodes and all below them are left out, save their cameras, whose numbers must not change.
 Pose pose_at(const Scene& scene, double time_s);
 
 /// Seconds after which all animations repeat: the longest duration; 0 if nothing moves.

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "renderer/scene/pose.h"
 
@@ -152,6 +155,69 @@ TEST_P(MovingScene, NothingJumps) {
       ASSERT_LT(glm::distance(now.lights[i].direction_ws, before.lights[i].direction_ws), 0.05f);
     ASSERT_LT(difference(now.cameras[0].world_from_view, before.cameras[0].world_from_view), 0.5f);
     before = std::move(now);
+  }
+}
+
+/// All triangles of a pose in the world, for the few rays of a test.
+std::vector<std::array<glm::vec3, 3>> world_triangles(const Pose& pose) {
+  std::vector<std::array<glm::vec3, 3>> triangles;
+  for (const Instance& instance : pose.instances)
+    for (std::size_t i = 0; i < instance.primitive->indices.size(); i += 3) {
+      const auto corner = [&](std::size_t k) {
+        const glm::vec3& p = instance.primitive->positions[instance.primitive->indices[i + k]];
+        return glm::vec3(instance.world_from_object * glm::vec4(p, 1.0f));
+      };
+      triangles.push_back({corner(0), corner(1), corner(2)});
+    }
+  return triangles;
+}
+
+struct NearestHit {
+  float distance = std::numeric_limits<float>::max();
+  bool front = false;
+};
+
+NearestHit nearest_hit(const std::vector<std::array<glm::vec3, 3>>& triangles, const glm::vec3& origin,
+                       const glm::vec3& direction) {
+  NearestHit nearest;
+  for (const auto& [a, b, c] : triangles) {
+    const glm::vec3 ab = b - a, ac = c - a, p = glm::cross(direction, ac);
+    const float determinant = glm::dot(ab, p);
+    if (determinant == 0.0f) continue;
+    const glm::vec3 from_a = origin - a, q = glm::cross(from_a, ab);
+    const float u = glm::dot(from_a, p) / determinant, v = glm::dot(direction, q) / determinant;
+    const float distance = glm::dot(ac, q) / determinant;
+    if (u < 0.0f || v < 0.0f || u + v > 1.0f || distance <= 0.0f || distance >= nearest.distance) continue;
+    nearest = {distance, determinant > 0.0f};
+  }
+  return nearest;
+}
+
+/// From the hall no ray sees a wall from behind, and the only ways out are the well's opening and the aisle's slit.
+TEST(Builtin, TheAtriumIsTight) {
+  const std::vector<std::array<glm::vec3, 3>> triangles =
+      world_triangles(pose_at(builtin_scene("atrium").value(), 7.0));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  for (int i = 0; i < 3000; ++i) {
+    const glm::vec3 origin(-2.4f + 4.6f * uniform(random), 1.1f + 2.2f * uniform(random),
+                           3.2f + 3.8f * uniform(random));
+    const float y = 2.0f * uniform(random) - 1.0f, around = 6.2831853f * uniform(random),
+                flat = std::sqrt(1.0f - y * y);
+    const glm::vec3 direction(flat * std::cos(around), y, flat * std::sin(around));
+    const NearestHit hit = nearest_hit(triangles, origin, direction);
+    SCOPED_TRACE(testing::Message() << "from " << origin.x << ' ' << origin.y << ' ' << origin.z << " along "
+                                    << direction.x << ' ' << direction.y << ' ' << direction.z);
+    if (hit.distance < 100.0f) {
+      ASSERT_TRUE(hit.front);
+      continue;
+    }
+    ASSERT_GT(direction.y, 0.0f);
+    const auto crossing = [&](float height) { return origin + direction * ((height - origin.y) / direction.y); };
+    const glm::vec3 slit = crossing(4.6f), opening = crossing(15.0f);
+    const bool through_slit = slit.x < -4.7f && slit.x > -5.21f && slit.z > 0.0f;
+    const bool through_opening = std::abs(opening.x) < 2.61f && opening.z > -5.31f && opening.z < -0.59f;
+    ASSERT_TRUE(through_slit || through_opening);
   }
 }
 

@@ -26,27 +26,30 @@ void add_arch(std::vector<glm::vec2>& outline, const glm::vec2& center, float ra
   }
 }
 
-/// Thick on all sides, so that no light finds a way between two sheets.
+// Neighbouring solids reach a few centimetres into each other and share no plane: what merely touches lets rays slip
+// through the seam, and what lies in one plane fights for depth. All walls are thick, so that no light leaks in.
+
 MeshBuilder well_walls() {
+  constexpr float kSide = kHalfWidth + 0.03f;
   MeshBuilder mesh;
-  mesh.box({kLeft, -1.2f, kWellBack - 1.0f}, {kRight, kWellTop, kWellBack});  // back
-  mesh.box({-kRight, -1.2f, kWellBack}, {-kHalfWidth, kWellTop, 0.0f});       // left
-  mesh.box({kHalfWidth, -1.2f, kWellBack}, {kRight, kWellTop, 0.0f});         // right
-  mesh.box({-kRight, kVaultTop, 0.0f}, {kRight, kWellTop, 1.0f});             // above the vault
+  mesh.box({kLeft, -1.2f, kWellBack - 1.0f}, {kRight + 0.05f, kWellTop, kWellBack});
+  mesh.box({-kRight, -1.2f, kWellBack - 0.1f}, {-kSide, kWellTop, 0.1f});
+  mesh.box({kSide, -1.2f, kWellBack - 0.1f}, {kRight + 0.03f, kWellTop, 0.1f});
+  mesh.box({-kRight + 0.05f, kVaultTop - 0.1f, 0.02f}, {kRight - 0.05f, kWellTop, 1.0f});  // above the vault
   return mesh;
 }
 
 MeshBuilder hall_walls() {
   MeshBuilder mesh;
-  mesh.box({kLeft, 0.0f, kHallFront}, {kRight, kVaultTop, kHallFront + 1.0f});  // behind the camera
-  mesh.box({kLeft, 0.0f, -1.0f}, {-kRight, 4.7f, 0.0f});                        // end of the aisle
+  mesh.box({kLeft, -0.1f, kHallFront}, {kRight, kVaultTop + 0.05f, kHallFront + 1.0f});  // behind the camera
+  mesh.box({kLeft, -0.1f, -1.0f}, {-kRight + 0.1f, 4.7f, 0.12f});                        // end of the aisle
   return mesh;
 }
 
 /// The aisle's ceiling stops short of its outer wall: daylight washes down there.
 MeshBuilder aisle_ceiling() {
   MeshBuilder mesh;
-  mesh.box({-4.72f, kVaultSpring, 0.0f}, {-kRight, 4.6f, kHallFront});
+  mesh.box({-4.72f, kVaultSpring - 0.02f, 0.0f}, {-kRight + 0.1f, 4.6f, kHallFront + 0.1f});
   return mesh;
 }
 
@@ -55,7 +58,7 @@ MeshBuilder vault() {
   std::vector<glm::vec2> outline = {{-kRight, kVaultTop}, {-kRight, kVaultSpring}};
   add_arch(outline, {0.0f, kVaultSpring}, kHalfWidth, 28);
   outline.insert(outline.end(), {{kRight, kVaultSpring}, {kRight, kVaultTop}});
-  return extrude(outline, kHallFront);
+  return extrude(outline, kHallFront + 0.1f);
 }
 
 /// Arches that carry the vault, one over each column, and the moulding it springs from.
@@ -83,10 +86,11 @@ MeshBuilder ribs() {
 
 /// The arches between hall and aisle, drawn in (z, y) and turned to stand along the hall.
 MeshBuilder arcade() {
-  std::vector<glm::vec2> outline = {{0.0f, kVaultSpring}, {0.0f, kArchSpring}};
+  constexpr float kTop = kVaultSpring + 0.05f, kEnd = kHallFront + 0.1f;
+  std::vector<glm::vec2> outline = {{0.0f, kTop}, {0.0f, kArchSpring}};
   for (int bay = 0; bay < kBays; ++bay)
     add_arch(outline, {kBay * (static_cast<float>(bay) + 0.5f), kArchSpring}, kArchRadius, 16);
-  outline.insert(outline.end(), {{kHallFront, kArchSpring}, {kHallFront, kVaultSpring}});
+  outline.insert(outline.end(), {{kEnd, kArchSpring}, {kEnd, kTop}});
   MeshBuilder mesh;
   // (x, y, z) of the extrusion becomes (-z, y, x), so that it fills x from kArcadeBack to the hall.
   const glm::mat4 turn({0, 0, 1, 0}, {0, 1, 0, 0}, {-1, 0, 0, 0}, {-kHalfWidth, 0, 0, 1});
@@ -111,7 +115,7 @@ MeshBuilder column() {
                                  {0.135f, 2.12f},
                                  {0.18f, 2.16f}});
   mesh.append(lathe(profile, 18));
-  mesh.append(bevelled_box({-0.195f, 2.16f, -0.195f}, {0.195f, kArchSpring, 0.195f}, 0.012f));
+  mesh.append(bevelled_box({-0.195f, 2.16f, -0.195f}, {0.195f, kArchSpring + 0.02f, 0.195f}, 0.012f));
   return mesh;
 }
 
@@ -130,9 +134,9 @@ MeshBuilder roof() {
   MeshBuilder mesh;
   const float low = kWellTop - 0.02f, high = kWellTop + 0.5f;
   mesh.box({-kRight, low, -6.5f}, {-2.6f, high, 1.0f});
-  mesh.box({2.6f, low, -6.5f}, {kRight, high, 1.0f});
-  mesh.box({-2.6f, low, -0.6f}, {2.6f, high, 1.0f});
-  mesh.box({-2.6f, low, -6.5f}, {2.6f, high, -5.3f});
+  mesh.box({2.6f, low, -6.5f}, {kRight + 0.05f, high, 1.0f});
+  mesh.box({-2.7f, low + 0.01f, -0.6f}, {2.7f, high - 0.01f, 0.99f});
+  mesh.box({-2.7f, low + 0.01f, -6.49f}, {2.7f, high - 0.01f, -5.3f});
   return mesh;
 }
 
@@ -147,9 +151,9 @@ void add_building(SceneBuilder& scene) {
 
   MeshBuilder floors, right_wall, aisle_wall;
   floors.box({kLeft, -1.2f, 0.0f}, {kRight, 0.0f, kHallFront + 1.0f});
-  floors.box({-kRight, -1.2f, -6.5f}, {kRight, kWellFloor, 0.0f});
-  right_wall.box({kHalfWidth, 0.0f, 0.0f}, {kRight, kVaultSpring, kHallFront});
-  aisle_wall.box({kLeft, 0.0f, 0.0f}, {kAisleWall, 4.7f, kHallFront});
+  floors.box({-kRight, -1.21f, -6.4f}, {kRight, kWellFloor, 0.1f});
+  right_wall.box({kHalfWidth, -0.1f, 0.0f}, {kRight, kVaultSpring + 0.05f, kHallFront + 0.1f});
+  aisle_wall.box({kLeft, -0.1f, 0.0f}, {kAisleWall, 4.71f, kHallFront + 0.1f});
   scene.mesh_node("floors", {{floors, paving}});
   scene.mesh_node("well walls", {{well_walls(), lime}});
   scene.mesh_node("hall walls", {{hall_walls(), lime}});
