@@ -9,14 +9,23 @@
 namespace lightwell {
 
 namespace {
+
 constexpr std::string_view kBuiltinPrefix = "builtin:";
+
+// The loader names the glTF object; the file is named here, unless it is that already.
+Error error_in(const std::string& scene, Error error) {
+  if (error.where.find(scene) == std::string::npos)
+    error.where = error.where.empty() ? scene : scene + ": " + error.where;
+  return error;
 }
+
+}  // namespace
 
 Result<Scene> load_scene_argument(const std::string& name) {
   const bool is_builtin = name.starts_with(kBuiltinPrefix);
   Result<Scene> scene =
       is_builtin ? builtin_scene(std::string_view(name).substr(kBuiltinPrefix.size())) : load_gltf(name);
-  if (!scene) return scene;
+  if (!scene) return error_in(name, scene.error());
   for (const std::string& warning : scene->warnings)
     std::fprintf(stderr, "lightwell: %s: warning: %s\n", name.c_str(), warning.c_str());
   if (add_default_light(*scene))
