@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "renderer/scene/gltf/load_gltf.h"
+#include "renderer/scene/tangents.h"
 
 namespace lightwell {
 namespace {
@@ -61,6 +62,31 @@ TEST(GltfAssets, AllLoad) {
               << " triangles, " << scene->nodes.size() << " nodes, " << scene->materials.size() << " materials, "
               << scene->images.size() << " images, " << scene->animations.size() << " animations\n";
     for (const std::string& warning : scene->warnings) std::cout << "  " << warning << '\n';
+  }
+}
+
+/// Largest angle in degrees between the tangents that a file brings and those made here from its other attributes.
+float largest_difference(const Primitive& primitive) {
+  const TangentMesh made = make_tangents(primitive.positions, primitive.normals, primitive.uv0, primitive.indices);
+  float least_cosine = 1.0f;
+  for (std::size_t corner = 0; corner < primitive.indices.size(); ++corner) {
+    const glm::vec4& given = primitive.tangents[primitive.indices[corner]];
+    const glm::vec4& own = made.tangents[made.indices[corner]];
+    EXPECT_EQ(given.w, own.w) << "corner " << corner;
+    least_cosine = std::min(least_cosine, glm::dot(glm::vec3(given), glm::vec3(own)));
+  }
+  return glm::degrees(std::acos(least_cosine));
+}
+
+/// Blender made this file's tangents with the original implementation of MikkTSpace.
+TEST(GltfAssets, TangentsAreThoseOfMikkTSpace) {
+  const char* folder = std::getenv("LIGHTWELL_ASSETS");
+  if (!folder) GTEST_SKIP() << "LIGHTWELL_ASSETS names no folder";
+  for (const std::filesystem::path& file : gltf_files(folder)) {
+    if (file.filename() != "NormalTangentMirrorTest.glb") continue;
+    const Result<Scene> scene = load_gltf(file);
+    ASSERT_TRUE(scene.ok());
+    EXPECT_LT(largest_difference(scene->meshes[0]->primitives[0]), 0.1f);
   }
 }
 
