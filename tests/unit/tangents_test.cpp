@@ -79,9 +79,8 @@ TEST(Tangents, VerticesOnAMirrorSeamAreSplit) {
 }
 
 TEST(Tangents, CornersWeighByTheirAngle) {
-  // Around the origin a corner of 90 degrees, where a step of u goes along +x, and one of 45 degrees, where it goes
-  // along (1, 1): the edges (0, 1) and (-1, 1) are the texture steps (0, -1) and (-1, -2), so that u = 1 is their
-  // difference (0, 1) - (-1, 1) - (0, -1).
+  // Around the origin a corner of 90 degrees, where a step of u goes along +x, and one of 45 degrees, where the edges
+  // (0, 1) and (-1, 1) are the texture steps (0, -1) and (-1, -2): a step of u is twice the one less the other, (1, 1).
   Grid grid;
   grid.add({0, 0}, {0, 0});
   grid.add({1, 0}, {1, 0});

@@ -17,9 +17,10 @@ struct Target {
 
 std::optional<Target> find_target(Context& context, const Scene& scene, const tinygltf::AnimationChannel& source,
                                   const std::string& where) {
-  const Node& node = at(scene.nodes, source.target_node, join(where, "target/node"));
+  // Of the file's nodes: those made of instances have no number there.
+  const tinygltf::Node& node = at(context.document.model.nodes, source.target_node, join(where, "target/node"));
   const bool moves = source.target_path != "weights";
-  if (moves && node.matrix) {
+  if (moves && !node.matrix.empty()) {
     context.warnings.add(where, "moves a node that has a matrix; left out");
     return std::nullopt;
   }
@@ -30,8 +31,7 @@ std::optional<Target> find_target(Context& context, const Scene& scene, const ti
     context.warnings.add(where, "animates " + in_quotes(source.target_path) + ", which is not supported; left out");
     return std::nullopt;
   }
-  const int mesh = context.document.model.nodes[static_cast<std::size_t>(source.target_node)].mesh;
-  const std::size_t width = mesh == kNone ? 0 : scene.meshes[static_cast<std::size_t>(mesh)]->weights.size();
+  const std::size_t width = node.mesh == kNone ? 0 : scene.meshes[static_cast<std::size_t>(node.mesh)]->weights.size();
   if (width > 0) return Target{AnimatedProperty::kWeights, static_cast<int>(width)};
   context.warnings.add(where, "animates morph targets that do not exist; left out");
   return std::nullopt;

@@ -18,20 +18,21 @@ std::string join(std::string_view parent, std::size_t child) {
   return join(parent, std::to_string(child));
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 80;
-  std::string result = "'";
-  for (const char character : text.substr(0, kLongest)) {
+std::string readable(std::string_view text, std::size_t longest) {
+  std::string result;
+  for (const char character : text.substr(0, longest)) {
     const auto code = static_cast<unsigned char>(character);
     result += code < 0x20 || code == 0x7f ? '?' : character;
   }
-  // A cut may fall within a character of several bytes; what is left of it is dropped.
-  if (text.size() > kLongest) {
-    while ((static_cast<unsigned char>(result.back()) & 0xc0) == 0x80) result.pop_back();
-    if (static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
-    result += "...";
-  }
-  return result + "'";
+  if (text.size() <= longest) return result;
+  // The cut may fall within a character of several bytes; what is left of it is dropped.
+  while (!result.empty() && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80) result.pop_back();
+  if (!result.empty() && static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
+  return result + "...";
+}
+
+std::string in_quotes(std::string_view text) {
+  return "'" + readable(text, 80) + "'";
 }
 
 std::string to_text(double value) {

@@ -32,7 +32,10 @@ class Failure : public std::exception {
 std::string join(std::string_view parent, std::string_view child);
 std::string join(std::string_view parent, std::size_t child);
 
-/// `text` from a file for a message: in quotes, shortened, without control characters.
+/// `text` that may come from a file for a message: cut after `longest` bytes, without control characters.
+std::string readable(std::string_view text, std::size_t longest);
+
+/// The same in quotes, for a name or a value.
 std::string in_quotes(std::string_view text);
 
 /// The number as a message shows it.

@@ -3,31 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/scene/gltf/extensions.h"
+#include "renderer/scene/gltf/json_text.h"
 #include "renderer/scene/gltf/schema.h"
 
 namespace lightwell::gltf {
 namespace {
 
 using nlohmann::json;
-
-json parse_json(std::string_view text) {
-  // glTF itself is nine levels deep, extras and extensions may be deeper. A value costs up to a few hundred bytes.
-  constexpr int kDeepest = 100;
-  constexpr std::uint64_t kMostValues = 16'000'000;
-  std::uint64_t values = 0;
-  const auto bound = [&values](int depth, json::parse_event_t, json&) {
-    if (depth > kDeepest)
-      fail("json", "nested more than " + std::to_string(kDeepest) + " levels deep", ErrorKind::kTooLarge);
-    if (++values > kMostValues)
-      fail("json", "more than " + std::to_string(kMostValues) + " values", ErrorKind::kTooLarge);
-    return true;
-  };
-  try {
-    return json::parse(text.begin(), text.end(), bound);
-  } catch (const json::exception& exception) {
-    fail("json", exception.what());
-  }
-}
 
 void check_version(const json& document) {
   const json& asset = document.at("asset");
@@ -121,7 +103,7 @@ tinygltf::Model read_model(json root, Warnings& warnings) {
                                                static_cast<unsigned int>(text.size()), "", tinygltf::REQUIRE_VERSION);
   while (!error.empty() && error.back() == '\n') error.pop_back();
   // Some of what it complains of it skips without failing; the schema has left nothing that may be skipped.
-  if (!read || !error.empty()) fail("json", error.empty() ? "cannot be understood" : error);
+  if (!read || !error.empty()) fail("json", error.empty() ? "cannot be understood" : readable(error, 200));
   for (const std::size_t i : without_view) model.accessors[i].bufferView = kNone;
   return model;
 }

@@ -29,10 +29,10 @@ Skin read_skin(Context& context, const tinygltf::Skin& source, const std::string
 
 /// One more than the highest joint that a vertex of the mesh follows: 0 if it follows none.
 std::size_t joints_needed(const Mesh& mesh) {
-  std::uint32_t needed = 0;
+  std::size_t needed = 0;
   for (const Primitive& primitive : mesh.primitives)
     for (const glm::uvec4& joints : primitive.joints)
-      needed = std::max({needed, joints.x + 1, joints.y + 1, joints.z + 1, joints.w + 1});
+      needed = std::max(needed, std::size_t{std::max({joints.x, joints.y, joints.z, joints.w})} + 1);
   return needed;
 }
 
