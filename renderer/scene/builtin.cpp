@@ -20,15 +20,17 @@ constexpr BuiltinScene kScenes[] = {
     {"venus", builtin::make_venus},
 };
 
+bool has_emission(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
+    return m.emissive_strength > 0.0f && m.emissive_factor != glm::vec3(0.0f);
+  });
+}
+
 bool has_light(const Scene& scene) {
   const auto lit = [&](const Node& node) { return node.light >= 0; };
-  const auto emits = [](const Material& m) {
-    return m.emissive_strength > 0.0f && m.emissive_factor != glm::vec3(0.0f);
-  };
   const Environment& sky = scene.environment;
   const bool sky_shines = sky.image || sky.zenith_radiance + sky.horizon_radiance + sky.ground_radiance != glm::vec3(0);
-  return std::any_of(scene.nodes.begin(), scene.nodes.end(), lit) ||
-         std::any_of(scene.materials.begin(), scene.materials.end(), emits) || (sky_shines && sky.strength > 0.0f);
+  return std::any_of(scene.nodes.begin(), scene.nodes.end(), lit) || (sky_shines && sky.strength > 0.0f);
 }
 
 }  // namespace
@@ -56,8 +58,12 @@ bool add_default_light(Scene& scene) {
   // that brings about three times as much to the ground.
   scene.environment.zenith_radiance = {0.92f, 1.0f, 1.12f};
   scene.environment.horizon_radiance = {1.12f, 1.1f, 1.06f};
-  scene.environment.ground_radiance = {0.34f, 0.32f, 0.3f};
-  scene.environment.strength = 1.0f;
+  // A grey floor under both would show about this.
+  scene.environment.ground_radiance = {1.02f, 0.98f, 0.93f};
+  // What glows by itself keeps the upper hand: a faint sky, so that what its light does not reach is not black.
+  constexpr float kFaint = 0.15f;
+  scene.environment.strength = has_emission(scene) ? kFaint : 1.0f;
+  if (has_emission(scene)) return true;
 
   Light sun;
   sun.name = "default sun";

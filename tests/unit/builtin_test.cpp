@@ -237,7 +237,9 @@ TEST(DefaultLight, IsAddedOnlyWhereNothingShines) {
   Scene glowing;
   glowing.materials.emplace_back();
   glowing.materials[0].emissive_factor = glm::vec3(0.1f);
-  EXPECT_FALSE(add_default_light(glowing));
+  EXPECT_TRUE(add_default_light(glowing));
+  EXPECT_TRUE(glowing.lights.empty());
+  EXPECT_LT(glowing.environment.strength, 0.5f);
   Scene under_sky;
   under_sky.environment.image = std::make_shared<ImageHdr>();
   EXPECT_FALSE(add_default_light(under_sky));
