@@ -4,6 +4,12 @@
 #include <glm/gtc/constants.hpp>
 
 namespace lightwell::builtin {
+namespace {
+
+/// Small, for the sake of shadow maps that cover the whole scene; beyond it the environment looks like more sand.
+constexpr float kGroundHalf = 34.0f;
+
+}  // namespace
 
 glm::vec3 Flight::position(float phase) const {
   const float a = glm::two_pi<float>() * (static_cast<float>(direction) * phase + first);
@@ -23,14 +29,14 @@ MeshBuilder dunes(int columns, int rows, float level_m) {
   // Points lie closer in the middle.
   const auto spread = [](float t) {
     const float from_middle = 2.0f * t - 1.0f;
-    return 60.0f * std::copysign(std::pow(std::abs(from_middle), 1.5f), from_middle);
+    return kGroundHalf * std::copysign(std::pow(std::abs(from_middle), 1.3f), from_middle);
   };
   MeshBuilder mesh;
   mesh.grid(make_grid(columns, rows, false, [&](float u, float v) {
     const float x = spread(u), z = -spread(v), away = std::hypot(x, z);
     const float dune = 1.3f + std::sin(0.21f * x + 0.13f * z + 0.6f) + 0.7f * std::sin(0.11f * x - 0.27f * z + 2.0f);
-    const float rim = 9.5f * glm::smoothstep(level_m + 15.0f, 62.0f, away);
-    return glm::vec3(x, glm::smoothstep(level_m, level_m + 17.0f, away) * dune + rim, z);
+    const float rim = 3.0f * glm::smoothstep(level_m + 8.0f, kGroundHalf, away);
+    return glm::vec3(x, glm::smoothstep(level_m, level_m + 14.0f, away) * dune + rim, z);
   }));
   return mesh;
 }
@@ -66,7 +72,7 @@ void Airfield::shine(float sun_lux, const std::function<glm::vec3(float phase)>&
   Environment& sky = scene_.environment();
   sky.zenith_radiance = {1.2f, 2.1f, 3.9f};
   sky.horizon_radiance = {3.4f, 3.9f, 4.4f};
-  sky.ground_radiance = {1.5f, 1.15f, 0.8f};  // the desert beyond the dunes
+  sky.ground_radiance = {2.5f, 1.55f, 0.95f};  // the desert beyond the dunes
 }
 
 void Airfield::search_light(int helicopter, float intensity_cd, const std::function<glm::quat(float phase)>& attitude) {
@@ -77,8 +83,8 @@ void Airfield::search_light(int helicopter, float intensity_cd, const std::funct
   lamp.intensity = intensity_cd;
   lamp.inner_cone_angle = 0.22f;
   lamp.outer_cone_angle = 0.42f;
-  const Transform below_the_nose{{0.0f, -0.95f, 1.2f}, attitude(0.0f), glm::vec3(1.0f)};
-  const int node = scene_.light_node(lamp, below_the_nose, helicopter);
+  const Transform ahead_of_the_nose{{0.0f, -0.75f, 2.6f}, attitude(0.0f), glm::vec3(1.0f)};
+  const int node = scene_.light_node(lamp, ahead_of_the_nose, helicopter);
   animate_rotation(motion_, node, 16, attitude);
 }
 

@@ -21,8 +21,8 @@ struct Flight {
   glm::quat attitude(float phase) const;
 };
 
-/// Dunes out to 60 m, `columns` x `rows` points, level within `level_m` of the middle and rising to hide the ground's
-/// end: 2 * (columns - 1) * (rows - 1) triangles.
+/// Dunes out to 34 m, `columns` x `rows` points, level within `level_m` of the middle: 2 * (columns - 1) * (rows - 1)
+/// triangles.
 MeshBuilder dunes(int columns, int rows, float level_m);
 
 /// Builds one of these scenes: owns its animations until it is finished.
@@ -39,7 +39,8 @@ class Airfield {
   /// A sun and sky; `direction(phase)` is the way the sun shines.
   void shine(float sun_lux, const std::function<glm::vec3(float phase)>& direction);
 
-  /// A warm search light of `intensity_cd` under a helicopter, turned by `attitude(phase)` relative to it.
+  /// A warm search light of `intensity_cd` ahead of a helicopter's nose, clear of its skids, turned by
+  /// `attitude(phase)` relative to it.
   void search_light(int helicopter, float intensity_cd, const std::function<glm::quat(float phase)>& attitude);
 
   /// The camera: at `eye(phase)`, looking at `target(phase)`.

@@ -73,8 +73,8 @@ glm::vec3 torso_point(float phi, float y) {
   glm::vec2 xz = section(phi, curve(kWidth, y), curve(kFront, y), curve(kBack, y), 0.88f);
   float out = 0.0f;
   for (const float side : {-1.0f, 1.0f}) {
-    const float across = turned(phi, side * 0.62f) / 0.42f, up = y - 1.283f;
-    out += 0.048f * bell(across) * bell(up / (up > 0.0f ? 0.072f : 0.046f));  // breasts, fuller below
+    const float across = turned(phi, side * 0.60f) / 0.38f, up = y - 1.280f;
+    out += 0.060f * bell(across) * bell(up / (up > 0.0f ? 0.072f : 0.044f));  // breasts, fuller below
     out += 0.012f * bell(turned(phi, glm::pi<float>() + side * 0.55f) / 0.4f) * bell((y - 0.90f) / 0.06f);
     out += 0.010f * bell(turned(phi, glm::pi<float>() + side * 0.6f) / 0.35f) * bell((y - 1.36f) / 0.06f);
     out -= 0.007f * bell(turned(phi, side * 0.75f) / 0.25f) * bell((y - 0.95f) / 0.06f);  // the groin's line
@@ -110,12 +110,12 @@ float head_radius(float phi, float y) {
   const float around = std::abs(turned(phi, 0.0f));
   const float face = 1.0f - glm::smoothstep(0.9f, 1.5f, around);
   float out = 0.0f;
-  out += 0.017f * bell(turned(phi, 0.0f) / 0.17f) * bell((y - 0.40f) / 0.085f);  // nose
-  out += 0.010f * bell(turned(phi, 0.0f) / 0.13f) * bell((y - 0.50f) / 0.08f);
-  out += 0.006f * bell(turned(phi, 0.0f) / 0.30f) * bell((y - 0.215f) / 0.05f);  // lips
+  out += 0.022f * bell(turned(phi, 0.0f) / 0.17f) * bell((y - 0.40f) / 0.085f);  // nose
+  out += 0.012f * bell(turned(phi, 0.0f) / 0.13f) * bell((y - 0.50f) / 0.08f);
+  out += 0.008f * bell(turned(phi, 0.0f) / 0.30f) * bell((y - 0.215f) / 0.05f);  // lips
   out += 0.007f * bell(turned(phi, 0.0f) / 0.35f) * bell((y - 0.05f) / 0.07f);   // chin
   for (const float side : {-1.0f, 1.0f}) {
-    out -= 0.011f * bell(turned(phi, side * 0.36f) / 0.20f) * bell((y - 0.485f) / 0.055f);  // eyes
+    out -= 0.016f * bell(turned(phi, side * 0.36f) / 0.20f) * bell((y - 0.485f) / 0.055f);  // eyes
     out += 0.005f * bell(turned(phi, side * 0.36f) / 0.30f) * bell((y - 0.585f) / 0.04f);   // brows
     out += 0.004f * bell(turned(phi, side * 0.62f) / 0.25f) * bell((y - 0.36f) / 0.09f);    // cheeks
   }
@@ -178,17 +178,21 @@ float fold_depth(int column, float h, float taut) {
   return depth * size * (1.0f - taut) * kProfile[static_cast<std::size_t>(column % kColumnsPerFold)];
 }
 
-glm::vec3 drapery_point(int column, float v) {
+/// The cloth's middle without folds: `h` is 0 at the hem and 1 at the hips.
+glm::vec2 drapery_section(float phi, float h) {
   constexpr glm::vec2 kWidth[] = {{0.0f, 0.205f},  {0.05f, 0.192f}, {0.25f, 0.160f}, {0.5f, 0.174f},
-                                  {0.75f, 0.200f}, {0.9f, 0.204f},  {1.0f, 0.192f}};
+                                  {0.75f, 0.198f}, {0.9f, 0.199f},  {1.0f, 0.190f}};
   constexpr glm::vec2 kDepth[] = {{0.0f, 0.180f},  {0.05f, 0.166f}, {0.25f, 0.125f}, {0.5f, 0.128f},
-                                  {0.75f, 0.140f}, {0.9f, 0.142f},  {1.0f, 0.128f}};
-  constexpr float kRoll = 0.86f;  // up to here v falls along the cloth, beyond it goes around the rolled edge
-  const float h = std::min(v / kRoll, 1.0f), fall = 1.0f - h;
+                                  {0.75f, 0.138f}, {0.9f, 0.138f},  {1.0f, 0.130f}};
+  return section(phi, curve(kWidth, h), curve(kDepth, h), curve(kDepth, h), 0.92f);
+}
+
+glm::vec3 drapery_point(int column, float h) {
+  const float fall = 1.0f - h;
   float phi = glm::two_pi<float>() * static_cast<float>(column) / (kFolds * kColumnsPerFold);
   // From the hips the folds are drawn over to the bent knee, below it they fall straight.
   phi += 0.38f * std::sin(glm::pi<float>() * std::min(1.4f * fall, 1.0f)) * std::cos(0.5f * turned(phi, 0.1f)) - 0.12f;
-  glm::vec2 xz = section(phi, curve(kWidth, h), curve(kDepth, h), curve(kDepth, h), 0.92f);
+  glm::vec2 xz = drapery_section(phi, h);
 
   // The bent leg: thigh, knee and shin push the cloth forward on her left; the standing leg shows faintly.
   constexpr glm::vec2 kBent[] = {{0.0f, 0.03f},   {0.15f, 0.030f}, {0.40f, 0.070f}, {0.55f, 0.118f},
@@ -196,20 +200,24 @@ glm::vec3 drapery_point(int column, float v) {
   const float bent = bell(turned(phi, 0.58f) / 0.44f), standing = bell(turned(phi, -0.62f) / 0.45f);
   float out = curve(kBent, h) * bent + 0.026f * standing * bell((h - 0.6f) / 0.35f);
   out -= 0.036f * bell(turned(phi, -0.08f) / 0.30f) * bell((h - 0.36f) / 0.28f);  // the hollow between the legs
-  const float taut =
-      std::min(0.9f * bent * bell((h - 0.64f) / 0.26f) + 0.5f * standing * bell((h - 0.75f) / 0.25f), 1.0f);
-  const float between = 0.45f * bell(turned(phi, 0.05f) / 0.35f);  // the hollow is fold enough
+  const float between = 0.45f * bell(turned(phi, 0.05f) / 0.35f);                 // is fold enough
+  const float taut = 0.9f * bent * bell((h - 0.64f) / 0.26f) + 0.5f * standing * bell((h - 0.75f) / 0.25f);
   out += fold_depth(column, h, std::min(taut + between, 1.0f));
-
-  float y = drapery_top(phi) * h;
-  if (v > kRoll) {  // around the roll: out, up and over, and into the body
-    const float around = glm::pi<float>() * (v - kRoll) / (1.0f - kRoll);
-    const float thick = 0.027f + 0.007f * std::sin(6.0f * phi + 1.0f + 1.6f * around);
-    out += thick * std::sin(around) - 0.030f * (1.0f - std::cos(around));
-    y += thick * (1.0f - std::cos(around));
-  }
   xz += out * glm::normalize(xz);
-  return stand({xz.x, y, xz.y});
+  return stand({xz.x, drapery_top(phi) * h, xz.y});
+}
+
+/// The upper edge, rolled and twisted into a thick cord. Its seam lies inside the body.
+MeshBuilder drapery_roll() {
+  MeshBuilder mesh;
+  mesh.grid(make_grid(22, 5, true, [](float u, float v) {
+    const float phi = glm::two_pi<float>() * u, around = glm::two_pi<float>() * v;  // inside, below, outside, above
+    const float thick = 0.034f * (1.0f + 0.28f * std::sin(5.0f * phi + 2.0f * around) + 0.25f * std::sin(phi + 0.4f));
+    glm::vec2 xz = drapery_section(phi, 1.0f);
+    xz += (0.004f - thick * std::cos(around)) * glm::normalize(xz);
+    return stand({xz.x, drapery_top(phi) - 1.15f * thick * std::sin(around), xz.y});
+  }));
+  return mesh;
 }
 
 }  // namespace
@@ -217,25 +225,25 @@ glm::vec3 drapery_point(int column, float v) {
 MeshBuilder figure_body() {
   MeshBuilder mesh = torso();
   mesh.append(head());
-  const std::array right = {glm::vec3(-0.085f, 1.412f, -0.008f), glm::vec3(-0.150f, 1.398f, -0.010f),
+  const std::array right = {glm::vec3(-0.080f, 1.408f, -0.008f), glm::vec3(-0.145f, 1.398f, -0.010f),
                             glm::vec3(-0.188f, 1.350f, -0.012f), glm::vec3(-0.200f, 1.27f, -0.016f),
                             glm::vec3(-0.200f, 1.17f, -0.010f)};
-  mesh.append(stump(right, std::array{0.036f, 0.056f, 0.055f, 0.047f, 0.042f}));
+  mesh.append(stump(right, std::array{0.046f, 0.060f, 0.056f, 0.048f, 0.042f}));
   const std::array left = {glm::vec3(0.085f, 1.412f, -0.008f), glm::vec3(0.150f, 1.400f, -0.006f),
                            glm::vec3(0.200f, 1.378f, 0.006f), glm::vec3(0.243f, 1.352f, 0.026f)};
-  mesh.append(stump(left, std::array{0.036f, 0.056f, 0.053f, 0.047f}));
+  mesh.append(stump(left, std::array{0.046f, 0.060f, 0.054f, 0.047f}));
   return mesh;
 }
 
 MeshBuilder figure_drapery() {
-  // Rows (fractions of the way up) crowd at the hem and around the roll.
-  constexpr std::array kRows = {0.0f,  0.06f, 0.16f, 0.26f, 0.36f, 0.46f, 0.55f,
-                                0.64f, 0.75f, 0.86f, 0.90f, 0.95f, 1.0f};
+  // Rows, as fractions of the way up, crowd at the hem.
+  constexpr std::array kRows = {0.0f, 0.06f, 0.16f, 0.26f, 0.36f, 0.46f, 0.55f, 0.64f, 0.75f, 0.88f, 1.0f};
   Grid grid{kFolds * kColumnsPerFold, static_cast<int>(kRows.size()), true, {}};
-  for (const float v : kRows)
-    for (int column = 0; column < grid.columns; ++column) grid.points.push_back(drapery_point(column, v));
+  for (const float h : kRows)
+    for (int column = 0; column < grid.columns; ++column) grid.points.push_back(drapery_point(column, h));
   MeshBuilder mesh;
   mesh.grid(grid);
+  mesh.append(drapery_roll());
   return mesh;
 }
 

@@ -15,7 +15,7 @@ float turn(float phase) {
 
 /// 3 x 380 triangles fly; these are the other 382.
 void add_place(SceneBuilder& scene) {
-  const int sand = scene.material("sand", {0.47f, 0.345f, 0.225f}, 0.95f);
+  const int sand = scene.material("sand", {0.37f, 0.235f, 0.14f}, 0.95f);
   const int concrete = scene.material("concrete", {0.56f, 0.55f, 0.53f}, 0.85f);
   const int marking = scene.material("marking", {0.85f, 0.83f, 0.78f}, 0.8f);
   const int vermilion = scene.material("vermilion wash", {0.72f, 0.16f, 0.05f}, 0.9f);
@@ -46,7 +46,7 @@ Scene make_helicopters() {
   field.shine(22.0f, [](float phase) {
     return glm::vec3(-0.95f + 0.5f * std::sin(turn(phase)), -0.8f, -0.45f + 0.25f * std::cos(turn(phase)));
   });
-  field.search_light(white, 2500.0f, [](float phase) {
+  field.search_light(white, 1500.0f, [](float phase) {
     return look_along({0.45f * std::sin(turn(phase)), -1.0f, 0.35f + 0.3f * std::cos(turn(phase))});
   });
   field.camera(

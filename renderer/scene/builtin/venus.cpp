@@ -18,7 +18,7 @@ float turn(float phase) {
 }
 
 void add_place(SceneBuilder& scene) {
-  const int sand = scene.material("sand", {0.50f, 0.39f, 0.27f}, 0.95f);
+  const int sand = scene.material("sand", {0.37f, 0.235f, 0.14f}, 0.95f);
   const int stone = scene.material("travertine", {0.62f, 0.57f, 0.49f}, 0.8f);
   const int marble = scene.material("marble", {0.81f, 0.78f, 0.73f}, 0.4f);
   const int crimson = scene.material("crimson wash", {0.66f, 0.05f, 0.06f}, 0.9f);
@@ -50,7 +50,7 @@ Scene make_venus() {
   field.shine(22.0f, [](float phase) {
     return glm::vec3(-0.85f + 0.35f * std::sin(turn(phase)), -0.75f, -0.42f + 0.2f * std::cos(turn(phase)));
   });
-  field.search_light(searching, 3000.0f, [near](float phase) {
+  field.search_light(searching, 1200.0f, [near](float phase) {
     const glm::vec3 chest(0.0f, kPedestal + 1.2f * kFigureScale, 0.0f);
     return glm::inverse(near.attitude(phase)) * look_along(chest - near.position(phase));
   });
