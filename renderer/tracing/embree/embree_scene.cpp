@@ -60,11 +60,14 @@ EmbreeGeometry make_triangles(RTCDevice device, const Primitive& primitive, cons
   return geometry;
 }
 
-float bounds_area_m2(RTCScene scene) {
+glm::vec3 extent_m(RTCScene scene) {
   RTCBounds bounds;
   rtcGetSceneBounds(scene, &bounds);
-  const glm::vec3 size{bounds.upper_x - bounds.lower_x, bounds.upper_y - bounds.lower_y,
-                       bounds.upper_z - bounds.lower_z};
+  return {bounds.upper_x - bounds.lower_x, bounds.upper_y - bounds.lower_y, bounds.upper_z - bounds.lower_z};
+}
+
+float bounds_area_m2(RTCScene scene) {
+  const glm::vec3 size = extent_m(scene);
   return 2.0f * (size.x * size.y + size.y * size.z + size.z * size.x);
 }
 
@@ -170,7 +173,9 @@ void EmbreeScene::rebuild_top_level(const std::vector<GeometryGroup>& groups,
     first_instances_.push_back(groups[i].first_instance);
     changed |= show(slots_[i], i, *levels[i], groups[i].world_from_object);
   }
-  if (changed) rtcCommitScene(top_level_.get());
+  if (!changed) return;
+  rtcCommitScene(top_level_.get());
+  diagonal_m_ = groups.empty() ? 0.0f : glm::length(extent_m(top_level_.get()));
 }
 
 bool EmbreeScene::show(Slot& slot, std::uint32_t id, const BottomLevel& level, const glm::mat4& world_from_object) {

@@ -34,6 +34,9 @@ class EmbreeScene {
     return lightwell::is_covered(coverage_[instance], *primitives_[instance], instance, triangle, u, v);
   }
 
+  /// Of the bounds of everything.
+  float diagonal_m() const { return diagonal_m_; }
+
   RTCDevice device() const { return device_.get(); }
   std::uint64_t memory_bytes() const { return memory_bytes_.load(std::memory_order_relaxed); }
 
@@ -67,6 +70,7 @@ class EmbreeScene {
   std::map<GeometryKey, std::unique_ptr<BottomLevel>> bottom_levels_;
   EmbreeSceneHandle top_level_;
   std::vector<Slot> slots_;
+  float diagonal_m_ = 0.0f;
   std::uint64_t frame_ = 0;
 
   AlphaRanges alpha_ranges_;
