@@ -55,8 +55,10 @@ glm::vec2 pixel_jitter(std::uint32_t frame_number) {
   return glm::vec2(glm::fract(0.5 + n * 0.7548776662466927), glm::fract(0.5 + n * 0.5698402909980532)) - 0.5f;
 }
 
-// A triangle, its material with or without a texture, and some lights.
-Scene warm_up_scene(bool textured, int lights) {
+enum class WarmUpTextures { kNone, kBaseColor, kAll };
+
+// A triangle, its material with or without textures and coverage, and some lights.
+Scene warm_up_scene(WarmUpTextures textures, int lights) {
   Primitive primitive;
   primitive.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   primitive.normals.assign(3, {0, 0, 1});
@@ -70,7 +72,11 @@ Scene warm_up_scene(bool textured, int lights) {
   scene.images.push_back(std::make_shared<Image>(Image{"texel", glm::ivec2(1), {255, 255, 255, 255}}));
   scene.textures.push_back({"texel", 0, {}});
   scene.materials.emplace_back();
-  if (textured) scene.materials[0].base_color_texture.texture = 0;
+  if (textures != WarmUpTextures::kNone) scene.materials[0].base_color_texture.texture = 0;
+  if (textures == WarmUpTextures::kAll) {
+    scene.materials[0].emissive_texture.texture = 0;
+    scene.materials[0].alpha_mode = AlphaMode::kMask;
+  }
   scene.nodes.emplace_back().mesh = 0;
   for (int i = 0; i < lights; ++i) {
     scene.lights.emplace_back().kind = LightKind::kSpot;
@@ -155,9 +161,9 @@ std::string_view Renderer::tracer_name() const {
 
 void Renderer::warm_up() {
   const std::unique_ptr<RenderView> view = make_view();
-  for (const bool textured : {false, true})
+  for (const WarmUpTextures textures : {WarmUpTextures::kNone, WarmUpTextures::kBaseColor, WarmUpTextures::kAll})
     for (const int lights : {1, 3}) {
-      const Scene scene = warm_up_scene(textured, lights);
+      const Scene scene = warm_up_scene(textures, lights);
       for (const Estimator estimator : {Estimator::kCorrected, Estimator::kLiteral})
         for (const ViewKind kind : {ViewKind::kFinal, ViewKind::kAlbedo}) {
           FrameRequest request;

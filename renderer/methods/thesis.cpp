@@ -50,8 +50,8 @@ const Picture& ThesisMethod::render(FrameContext& frame) {
   const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose);
   frame.timer.mark("shadow maps");
   const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
-  const Picture& picture = compose_pass_.run(frame.scene, g_buffer, shadows, indirect, gather_pass_.occlusion_distance(),
-                                             frame.settings.view, frame.accumulate);
+  const Picture& picture =
+      compose_pass_.run(frame.scene, g_buffer, shadows, indirect, gather_pass_, frame.settings, frame.accumulate);
   frame.timer.mark("compose");
   return picture;
 }
@@ -80,11 +80,11 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
     all_bounces_.image.clear(glm::vec4(0.0f));
     return all_bounces_;
   }
-  traced_ = false;
+  traced_ = nullptr;
   for (int bounce = 1; bounce <= frame.settings.bounces; ++bounce) {
     gather_bounce(frame, g_buffer, shadows, grid, bounce);
     if (frame.settings.denoise) {
-      filter_pass_.run(g_buffer, grid, bounce_);
+      filter_pass_.run(gather_pass_.guide(), bounce_);
       frame.timer.mark("filter");
     }
     add_maps_pass_.run(bounce_, all_bounces_, bounce == 1);
@@ -94,29 +94,32 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
   return all_bounces_;
 }
 
-// All directions of one bounce, in batches. A single batch is traced once for all bounces.
+// The directions [first, first + batch) and their hits. A single batch is made and traced once for all bounces.
+const Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                                            std::uint32_t first, std::uint32_t batch) {
+  if (traced_ != nullptr && traced_->first == first) return *traced_;
+  const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
+  const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
+  traced_ = &directions_pass_.run(g_buffer, grid, first, std::min(batch, samples - first), seed);
+  frame.timer.mark("directions");
+  frame.tracer.closest_hit(traced_->rays, traced_->ray_count, occlusion_.hits);
+  frame.rays += traced_->ray_count;
+  frame.timer.mark("trace");
+  return *traced_;
+}
+
 void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                  const IndirectMapGrid& grid, int bounce) {
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
   const std::uint32_t batch = directions_per_batch(grid, frame.settings.samples);
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
-  const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
-  const Directions* directions = nullptr;
   for (std::uint32_t first = 0; first < samples; first += batch) {
-    directions = &directions_pass_.run(g_buffer, grid, first, std::min(batch, samples - first), seed);
-    frame.timer.mark("directions");
-    if (!traced_ || traced_first_ != first) {
-      frame.tracer.closest_hit(directions->rays, directions->ray_count, occlusion_.hits);
-      frame.rays += directions->ray_count;
-      traced_ = true;
-      traced_first_ = first;
-      frame.timer.mark("trace");
-    }
+    const Directions& directions = trace_batch(frame, g_buffer, grid, first, batch);
     const HitRadiance& radiance =
-        bounce == 1 ? hit_light_pass_.run(frame.scene, *directions, occlusion_, shadows, literal)
-                    : hit_light_pass_.run_from_screen(g_buffer, *directions, occlusion_, previous_bounce_.image);
+        bounce == 1 ? hit_light_pass_.run(frame.scene, directions, occlusion_, shadows, literal)
+                    : hit_light_pass_.run_from_screen(g_buffer, directions, occlusion_, previous_bounce_.image);
     frame.timer.mark(bounce == 1 ? "light of hits" : "light from screen");
-    gather_pass_.run(g_buffer, grid, *directions, occlusion_, radiance, samples, literal, bounce_);
+    gather_pass_.run(g_buffer, grid, directions, occlusion_, radiance, samples, literal, bounce_);
     frame.timer.mark("gather");
   }
 }

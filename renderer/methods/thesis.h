@@ -23,6 +23,8 @@ class ThesisMethod {
   void resize(const FrameContext& frame, const IndirectMapGrid& grid);
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);
+  const Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                                std::uint32_t first, std::uint32_t batch);
   void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMapGrid& grid, int bounce);
 
@@ -36,8 +38,7 @@ class ThesisMethod {
   ComposePass compose_pass_;
   OcclusionMap occlusion_;
   IndirectMap bounce_, previous_bounce_, all_bounces_;
-  std::uint32_t traced_first_ = 0;  // the batch whose hits are in occlusion_
-  bool traced_ = false;
+  const Directions* traced_ = nullptr;  // the batch whose hits are in occlusion_; null: none of this frame
 };
 
 }  // namespace lightwell

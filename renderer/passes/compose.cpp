@@ -17,6 +17,10 @@ struct DeviceEnvironment {
   glm::vec4 background;
 };
 
+gl::ProgramPtr program_with(gl::ShaderLibrary& shaders, const std::vector<std::string>& defines) {
+  return shaders.raster("passes/full_screen.vert", "passes/compose.frag", defines);
+}
+
 struct DeviceExposure {
   float exposure;
   float exposure_ev;
@@ -51,9 +55,19 @@ void EnvironmentBlock::bind() const {
 }
 
 ComposePass::ComposePass(gl::ShaderLibrary& shaders)
-    : plain_(shaders.raster("passes/full_screen.vert", "passes/compose.frag")),
-      general_(shaders.raster("passes/full_screen.vert", "passes/compose.frag", {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
-      auxiliary_(shaders.raster("passes/full_screen.vert", "passes/compose.frag", {"AUXILIARY_VIEWS 1"})) {}
+    : plain_(program_with(shaders, {})),
+      general_(program_with(shaders, {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
+      plain_joint_(program_with(shaders, {"JOINT_UPSCALE 1"})),
+      general_joint_(program_with(shaders, {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1", "JOINT_UPSCALE 1"})),
+      auxiliary_(program_with(shaders, {"AUXILIARY_VIEWS 1"})) {}
+
+ComposePass::Variant& ComposePass::variant_for(const DeviceScene& scene, const Settings& settings) {
+  const ViewKind view = settings.view;
+  if (view != ViewKind::kFinal && view != ViewKind::kDirect && view != ViewKind::kIndirect) return auxiliary_;
+  const bool general = scene.has_environment_image() || scene.has_many_lights();
+  if (settings.denoise) return general ? general_joint_ : plain_joint_;
+  return general ? general_ : plain_;
+}
 
 void ComposePass::resize(glm::ivec2 size_px) {
   if (picture_.image && picture_.image.size_px() == size_px) return;
@@ -62,17 +76,16 @@ void ComposePass::resize(glm::ivec2 size_px) {
 }
 
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
-                                const IndirectMap& indirect, const gl::Texture& occlusion_distance, ViewKind view,
+                                const IndirectMap& indirect, const GatherPass& gathered, const Settings& settings,
                                 bool accumulate) {
   if (!accumulate) picture_.accumulated = 0;
   g_buffer.bind();
   shadows.bind();
   indirect.image.bind(UNIT_IMAGE_B);
-  occlusion_distance.bind(UNIT_IMAGE_C);
-  const bool light = view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
-  const bool general = scene.has_environment_image() || scene.has_many_lights();
-  Variant& variant = !light ? auxiliary_ : general ? general_ : plain_;
-  variant.view = static_cast<int>(view);
+  gathered.occlusion_distance().bind(UNIT_IMAGE_C);
+  gathered.guide().bind(UNIT_GUIDE);
+  Variant& variant = variant_for(scene, settings);
+  variant.view = static_cast<int>(settings.view);
   variant.program->use();
   framebuffer_.bind();
   if (picture_.accumulated > 0) {

@@ -35,10 +35,11 @@ class ComposePass {
  public:
   explicit ComposePass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 size_px);
+  /// The view and the way of scaling up are the settings'; `gathered` holds what the indirect map was made with.
   /// `accumulate`: average with the frames already in the picture.
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
-                     const IndirectMap& indirect,
-                     const gl::Texture& occlusion_distance, ViewKind view, bool accumulate);
+                     const IndirectMap& indirect, const GatherPass& gathered, const Settings& settings,
+                     bool accumulate);
   const Picture& picture() const { return picture_; }
 
  private:
@@ -47,7 +48,8 @@ class ComposePass {
     gl::ProgramPtr program;
     gl::Uniform<int> view;
   };
-  Variant plain_, general_, auxiliary_;
+  Variant& variant_for(const DeviceScene& scene, const Settings& settings);
+  Variant plain_, general_, plain_joint_, general_joint_, auxiliary_;
   Picture picture_;
   gl::Framebuffer framebuffer_;
   gl::EmptyVertexArray full_screen_;

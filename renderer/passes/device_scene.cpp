@@ -1,7 +1,6 @@
 #include "renderer/passes/device_scene.h"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -83,7 +82,6 @@ DeviceScene::DeviceScene()
     : instances_("instances", 0),
       materials_("materials", 0),
       draw_commands_("draws", 0),
-      instance_numbers_("instance numbers", 0),
       vertex_texels_("vertices", GL_RGBA32UI),
       triangle_texels_("triangles", GL_RGBA32UI),
       instance_texels_("instances", GL_RGBA32UI),
@@ -145,12 +143,14 @@ void DeviceScene::upload_materials(const Scene& scene) {
   packed.push_back(pack_material(Material{}, textures));  // the default material of glTF, last
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
-  const auto textured = [](const DeviceMaterial& material) {
-    return (material.base_color_texture.slot | material.metallic_roughness_texture.slot |
-            material.normal_texture.slot | material.emissive_texture.slot) != 0;
-  };
   has_environment_image_ = scene.environment.image != nullptr;
-  has_textures_ = has_environment_image_ || std::any_of(packed.begin(), packed.end(), textured);
+  has_textures_ = has_all_textures_ = has_coverage_ = false;
+  for (const DeviceMaterial& material : packed) {
+    has_textures_ |= material.base_color_texture.slot != 0;
+    has_all_textures_ |=
+        (material.metallic_roughness_texture.slot | material.normal_texture.slot | material.emissive_texture.slot) != 0;
+    has_coverage_ |= (material.flags & (kDeviceMaterialMask | kDeviceMaterialBlend)) != 0;
+  }
   materials_.reserve(packed.size() * sizeof(DeviceMaterial));
   materials_.upload(std::span<const DeviceMaterial>(packed));
 }
@@ -213,11 +213,6 @@ void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
   }
   draw_commands_.reserve(all.size() * sizeof(DrawCommand));
   draw_commands_.upload(std::span<const DrawCommand>(all));
-  if (instance_numbers_.reserve(packed.size() * sizeof(std::uint32_t)) || packed.size() <= 4) {
-    std::vector<std::uint32_t> numbers(instance_numbers_.size_bytes() / sizeof(std::uint32_t));
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    instance_numbers_.upload(std::span<const std::uint32_t>(numbers));
-  }
 }
 
 void DeviceScene::set_vertex_array() {
@@ -225,7 +220,7 @@ void DeviceScene::set_vertex_array() {
   const GLuint array = vertex_array_;
   glVertexArrayVertexBuffer(array, 0, geometry.positions().id(), 0, sizeof(glm::vec3));
   glVertexArrayVertexBuffer(array, 1, geometry.vertices().id(), 0, sizeof(DeviceVertex));
-  glVertexArrayVertexBuffer(array, 2, instance_numbers_.id(), 0, sizeof(std::uint32_t));
+  glVertexArrayVertexBuffer(array, 2, instances_.id(), 0, sizeof(DeviceInstance));
   glVertexArrayBindingDivisor(array, 2, 1);
   glVertexArrayElementBuffer(array, geometry.indices().id());
   const auto enable = [array](GLuint attribute, GLuint binding) {
@@ -236,10 +231,12 @@ void DeviceScene::set_vertex_array() {
   glVertexArrayAttribIFormat(array, 1, 2, GL_UNSIGNED_INT, offsetof(DeviceVertex, normal));
   glVertexArrayAttribFormat(array, 2, 4, GL_FLOAT, GL_FALSE, offsetof(DeviceVertex, uv0));
   glVertexArrayAttribFormat(array, 3, 4, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(DeviceVertex, color));
-  glVertexArrayAttribIFormat(array, 4, 1, GL_UNSIGNED_INT, 0);
+  for (GLuint row = 0; row < 3; ++row)
+    glVertexArrayAttribFormat(array, 4 + row, 4, GL_FLOAT, GL_FALSE, row * static_cast<GLuint>(sizeof(glm::vec4)));
+  glVertexArrayAttribIFormat(array, 7, 4, GL_UNSIGNED_INT, offsetof(DeviceInstance, first_vertex));
   enable(0, 0);
   for (const GLuint attribute : {1u, 2u, 3u}) enable(attribute, 1);
-  enable(4, 2);
+  for (const GLuint attribute : {4u, 5u, 6u, 7u}) enable(attribute, 2);
 }
 
 void DeviceScene::bind() const {

@@ -57,8 +57,11 @@ class DeviceScene {
   void bind() const;
 
   /// What the shaders of this scene must be able to do; a software device pays for all that they could.
-  /// Textures: also vertex colours and an environment image. Many lights: more than two.
-  bool has_textures() const { return has_textures_; }
+  /// Textures: of base colours, and vertex colours. All textures: of anything else. Coverage: alpha masks or blends.
+  /// Many lights: more than two.
+  bool has_textures() const { return has_textures_ || has_all_textures_; }
+  bool has_all_textures() const { return has_all_textures_; }
+  bool has_coverage() const { return has_coverage_; }
   bool has_environment_image() const { return has_environment_image_; }
   bool has_many_lights() const { return has_many_lights_; }
   std::uint64_t triangles() const { return triangles_; }
@@ -88,11 +91,12 @@ class DeviceScene {
 
   std::list<std::unique_ptr<DeviceGeometry>> geometries_;  // most recently used first
   std::list<std::unique_ptr<SceneTextures>> textures_;
-  gl::Buffer instances_, materials_, draw_commands_, instance_numbers_;
+  gl::Buffer instances_, materials_, draw_commands_;
   gl::BufferTexture vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
   GLuint vertex_array_ = 0;
   Draws draws_[3];
-  bool has_textures_ = false, has_environment_image_ = false, has_many_lights_ = false;
+  bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false;
+  bool has_environment_image_ = false, has_many_lights_ = false;
   std::uint64_t triangles_ = 0;
 };
 

@@ -100,9 +100,10 @@ DeviceMaterial pack_material(const Material& material, const SceneTextures& text
   const float ratio = (material.ior - 1.0f) / (material.ior + 1.0f);
   packed.f0_dielectric = ratio * ratio;
   packed.specular_factor = material.specular_factor;
-  packed.flags = (material.alpha_mode == AlphaMode::kMask ? 1u : 0u) |
-                 (material.alpha_mode == AlphaMode::kBlend ? 2u : 0u) | (material.double_sided ? 4u : 0u) |
-                 (material.unlit ? 8u : 0u);
+  packed.flags = (material.alpha_mode == AlphaMode::kMask ? kDeviceMaterialMask : 0u) |
+                 (material.alpha_mode == AlphaMode::kBlend ? kDeviceMaterialBlend : 0u) |
+                 (material.double_sided ? kDeviceMaterialDoubleSided : 0u) |
+                 (material.unlit ? kDeviceMaterialUnlit : 0u);
   packed.alpha_cutoff = material.alpha_cutoff;
   packed.base_color_texture = pack_use(material.base_color_texture, true, textures);
   packed.metallic_roughness_texture = pack_use(material.metallic_roughness_texture, false, textures);

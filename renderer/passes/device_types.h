@@ -38,6 +38,8 @@ struct DeviceInstance {
 };
 static_assert(sizeof(DeviceInstance) == 64);
 constexpr std::uint32_t kDeviceInstanceMirrored = 1;
+constexpr std::uint32_t kDeviceMaterialMask = 1, kDeviceMaterialBlend = 2;
+constexpr std::uint32_t kDeviceMaterialDoubleSided = 4, kDeviceMaterialUnlit = 8;
 
 struct DeviceTextureUse {
   glm::vec4 uv_transform{1.0f, 0.0f, 0.0f, 1.0f};

@@ -13,7 +13,9 @@ void GBuffer::bind() const {
 
 GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag")),
-      textured_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", {"HAS_TEXTURES 1"})) {}
+      base_color_textures_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", {"HAS_TEXTURES 1"})),
+      all_textures_(
+          shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", {"HAS_TEXTURES 1", "ALL_TEXTURES 1"})) {}
 
 void GBufferPass::resize(glm::ivec2 size_px) {
   if (buffer_.depth && buffer_.size_px() == size_px) return;
@@ -33,7 +35,9 @@ const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed) {
   glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 2, zero);
   glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, zero);
 
-  const Variant& variant = scene.has_textures() ? textured_ : plain_;
+  const Variant& variant = scene.has_all_textures() ? all_textures_
+                           : scene.has_textures()   ? base_color_textures_
+                                                    : plain_;
   variant.program->use();
   variant.frame_seed = seed;
   glEnable(GL_DEPTH_TEST);

@@ -31,7 +31,7 @@ class GBufferPass {
     gl::ProgramPtr program;
     gl::Uniform<std::uint32_t> frame_seed;
   };
-  Variant plain_, textured_;
+  Variant plain_, base_color_textures_, all_textures_;
   GBuffer buffer_;
   gl::Framebuffer framebuffer_;
 };

@@ -4,12 +4,7 @@
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/scene_data.glsl"
-
-layout(location = 0) in vec3 position;
-layout(location = 1) in uvec2 normal_tangent;
-layout(location = 2) in vec4 uv;
-layout(location = 3) in vec4 color;
-layout(location = 4) in uint instance_number;
+#include "shaders/vertex_input.glsl"
 
 out vec3 world_position;
 out vec3 world_normal;
@@ -21,7 +16,7 @@ out vec4 vertex_color_factor;
 flat out uint material_index;
 
 void main() {
-  const Instance instance = fetch_instance(instance_number);
+  const Instance instance = vertex_instance();
   world_position = transform_point(instance, position);
   world_normal = transform_normal(instance, vertex_normal(normal_tangent.x));
 #ifdef HAS_TEXTURES

@@ -16,6 +16,7 @@ layout(binding = UNIT_WEIGHTS) uniform usamplerBuffer weights;
 layout(binding = UNIT_HIT_RADIANCE) uniform usamplerBuffer hit_radiance;
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
+layout(rgba32ui, binding = 2) writeonly uniform uimage2D guide;  // what the filter compares, see indirect_filter.comp
 
 uniform uint direction_count;  // in this batch
 uniform uint total_directions; // in all batches
@@ -47,6 +48,8 @@ void main() {
   const vec3 demodulated = point.valid ? sum / albedo * (literal == 1 ? 1.0 : 1.0 / float(total_directions)) : vec3(0.0);
   const vec4 before = first_batch == 1 ? vec4(0.0) : imageLoad(indirect_map, map_pixel);
   imageStore(indirect_map, map_pixel, vec4(before.rgb + demodulated, point.valid ? 1.0 : 0.0));
-  if (first_batch == 1)
-    imageStore(occlusion_distance, map_pixel, vec4(distance_sum.y > 0.0 ? distance_sum.x / distance_sum.y : 0.0));
+  if (first_batch == 0) return;
+  imageStore(occlusion_distance, map_pixel, vec4(distance_sum.y > 0.0 ? distance_sum.x / distance_sum.y : 0.0));
+  imageStore(guide, map_pixel,
+             uvec4(floatBitsToUint(point.position_ws), pack_normal_roughness(point.normal_ws, sqrt(point.brdf.alpha))));
 }

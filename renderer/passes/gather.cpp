@@ -25,6 +25,7 @@ void GatherPass::resize(glm::ivec2 map_size_px) {
   gl::TextureOptions options;
   options.min_filter = options.mag_filter = GL_LINEAR;
   occlusion_distance_ = gl::Texture("occlusion distance", GL_R32F, map_size_px, options);
+  guide_ = gl::Texture("filter guide", GL_RGBA32UI, map_size_px);
 }
 
 void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const Directions& directions,
@@ -36,6 +37,7 @@ void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const
   radiance.texels.bind(UNIT_HIT_RADIANCE);
   map.image.bind_image(0, GL_READ_WRITE);
   occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
+  guide_.bind_image(2, GL_WRITE_ONLY);
   grid_.set(grid);
   direction_count_ = directions.count;
   total_directions_ = total_directions;
@@ -46,21 +48,20 @@ void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const
 }
 
 IndirectFilterPass::IndirectFilterPass(gl::ShaderLibrary& shaders)
-    : program_(shaders.compute("passes/indirect_filter.comp")), grid_(program_), stride_(program_, "stride") {}
+    : program_(shaders.compute("passes/indirect_filter.comp")), stride_(program_, "stride") {}
 
 void IndirectFilterPass::resize(glm::ivec2 map_size_px) {
   if (scratch_.image && scratch_.image.size_px() == map_size_px) return;
   scratch_ = make_indirect_map(map_size_px);
 }
 
-void IndirectFilterPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, IndirectMap& map) {
-  g_buffer.bind();
-  grid_.set(grid);
+void IndirectFilterPass::run(const gl::Texture& guide, IndirectMap& map) {
+  guide.bind(UNIT_IMAGE_B);
   for (const int stride : {1, 2, 4}) {
     map.image.bind(UNIT_IMAGE_A);
     scratch_.image.bind_image(0, GL_WRITE_ONLY);
     stride_ = stride;
-    program_->dispatch(grid.map_size_px);
+    program_->dispatch(map.image.size_px());
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     std::swap(map, scratch_);
   }

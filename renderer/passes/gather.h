@@ -30,13 +30,15 @@ class GatherPass {
 
   /// Mean distance of a pixel's hits in the first batch, metres (R32F).
   const gl::Texture& occlusion_distance() const { return occlusion_distance_; }
+  /// Position, normal and roughness of the points gathered at, for the filter (RGBA32UI).
+  const gl::Texture& guide() const { return guide_; }
 
  private:
   gl::ProgramPtr program_;
   IndirectMapUniforms grid_;
   gl::Uniform<std::uint32_t> direction_count_, total_directions_;
   gl::Uniform<int> first_batch_, literal_;
-  gl::Texture occlusion_distance_;
+  gl::Texture occlusion_distance_, guide_;
 };
 
 /// An edge-stopping a-trous filter over the map; not in the thesis.
@@ -44,11 +46,10 @@ class IndirectFilterPass {
  public:
   explicit IndirectFilterPass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 map_size_px);
-  void run(const GBuffer& g_buffer, const IndirectMapGrid& grid, IndirectMap& map);
+  void run(const gl::Texture& guide, IndirectMap& map);
 
  private:
   gl::ProgramPtr program_;
-  IndirectMapUniforms grid_;
   gl::Uniform<int> stride_;
   IndirectMap scratch_;
 };

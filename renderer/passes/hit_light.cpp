@@ -7,9 +7,11 @@ namespace lightwell {
 HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.compute("passes/hit_light.comp")),
       many_lights_(shaders.compute("passes/hit_light.comp", {"MANY_LIGHTS 1"})),
-      textured_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1"})),
-      general_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
-      literal_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "MANY_LIGHTS 1", "LITERAL 1"})),
+      base_color_textures_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1"})),
+      general_(shaders.compute("passes/hit_light.comp",
+                               {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
+      literal_(
+          shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "MANY_LIGHTS 1", "LITERAL 1"})),
       screen_program_(shaders.compute("passes/screen_light.comp")),
       screen_ray_count_(screen_program_, "ray_count") {
   radiance_.radiance = gl::Buffer("hit radiance", 0);
@@ -28,7 +30,8 @@ void HitLightPass::bind(const Directions& directions, const OcclusionMap& occlus
 
 HitLightPass::Variant& HitLightPass::variant_for(const DeviceScene& scene, bool literal) {
   if (literal) return literal_;
-  if (scene.has_textures()) return scene.has_many_lights() ? general_ : textured_;
+  if (scene.has_all_textures() || scene.has_environment_image()) return general_;
+  if (scene.has_textures()) return scene.has_many_lights() ? general_ : base_color_textures_;
   return scene.has_many_lights() ? many_lights_ : plain_;
 }
 

@@ -12,7 +12,7 @@ namespace lightwell {
 
 /// The nearest hit along each ray of a batch of directions: M(p, d_j) of the thesis, as records.
 struct OcclusionMap {
-  gl::Buffer hits;                                // Hit
+  gl::Buffer hits;                                 // Hit
   gl::BufferTexture hit_texels{"hits", GL_R32UI};  // the same, 5 texels a hit
 };
 
@@ -44,7 +44,7 @@ class HitLightPass {
   };
   void bind(const Directions& directions, const OcclusionMap& occlusion) const;
   Variant& variant_for(const DeviceScene& scene, bool literal);
-  Variant plain_, many_lights_, textured_, general_, literal_;
+  Variant plain_, many_lights_, base_color_textures_, general_, literal_;
   gl::ProgramPtr screen_program_;
   gl::Uniform<std::uint32_t> screen_ray_count_;
   HitRadiance radiance_;

@@ -3,10 +3,7 @@
 #include "shaders/sampling.glsl"
 #include "shaders/brdf.glsl"
 #include "shaders/scene_data.glsl"
-
-layout(location = 0) in vec3 position;
-layout(location = 2) in vec4 uv;
-layout(location = 4) in uint instance_number;
+#include "shaders/vertex_input.glsl"
 
 uniform mat4 light_clip_from_world;
 
@@ -17,7 +14,7 @@ flat out uint material_index;
 #endif
 
 void main() {
-  const Instance instance = fetch_instance(instance_number);
+  const Instance instance = vertex_instance();
   world_position = transform_point(instance, position);
 #ifdef HAS_TEXTURES
   texture_uv = uv;

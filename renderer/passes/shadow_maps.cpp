@@ -130,7 +130,7 @@ void ShadowMaps::bind() const {
 
 ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag")),
-      textured_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
+      covered_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
       filter_program_(shaders.raster("passes/full_screen.vert", "passes/shadow_filter.frag")),
       filter_direction_(filter_program_, "direction"),
       filter_radius_(filter_program_, "radius"),
@@ -216,7 +216,7 @@ void ShadowMapsPass::draw(const DeviceScene& scene, const View& view) {
   const GLfloat far[4] = {1, 1, 0, 0};
   glClearNamedFramebufferfv(raw_framebuffer_.id(), GL_COLOR, 0, far);
   glClearNamedFramebufferfv(raw_framebuffer_.id(), GL_DEPTH, 0, far);
-  const Variant& variant = scene.has_textures() ? textured_ : plain_;
+  const Variant& variant = scene.has_coverage() ? covered_ : plain_;
   variant.program->use();
   variant.clip_from_world = view.clip_from_world;
   variant.position_far = view.position_far;
@@ -226,8 +226,7 @@ void ShadowMapsPass::draw(const DeviceScene& scene, const View& view) {
   glDisable(GL_DEPTH_TEST);
 }
 
-void ShadowMapsPass::filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction,
-                                 int radius) {
+void ShadowMapsPass::filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction, int radius) {
   from.bind(0);
   to.bind();
   filter_direction_ = direction;

@@ -51,15 +51,15 @@ class ShadowMapsPass {
   void filter_into(int layer);
   void filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction, int radius);
 
-  Variant plain_, textured_;
+  Variant plain_, covered_;
   gl::ProgramPtr filter_program_;
   gl::Uniform<glm::ivec2> filter_direction_;
   gl::Uniform<int> filter_radius_;
   gl::Uniform<glm::vec2> filter_texel_size_;
   gl::EmptyVertexArray full_screen_;
   ShadowMaps maps_;
-  gl::Texture raw_, depth_;        // one light's view, before it is filtered into its layer
-  gl::Texture half_[2];            // between the passes of a wide filter
+  gl::Texture raw_, depth_;  // one light's view, before it is filtered into its layer
+  gl::Texture half_[2];      // between the passes of a wide filter
   gl::Framebuffer raw_framebuffer_, half_framebuffers_[2];
   std::vector<gl::Framebuffer> layers_;
   int filter_px_ = 1;

@@ -22,3 +22,14 @@ uvec4 pack_g_surface(vec3 normal_ws, vec3 geometric_normal_ws, vec3 base_color, 
   return uvec4(packSnorm2x16(octahedral_from_unit(normal_ws)), packSnorm2x16(octahedral_from_unit(geometric_normal_ws)),
                packUnorm2x16(base_color.rg), packUnorm2x16(vec2(base_color.b, metallic)));
 }
+
+// A unit vector in 24 bits and a number of [0, 1] in 8.
+uint pack_normal_roughness(vec3 normal, float roughness) {
+  const uvec2 octahedral = uvec2(clamp(octahedral_from_unit(normal) * 0.5 + 0.5, 0.0, 1.0) * 4095.0 + 0.5);
+  return octahedral.x | octahedral.y << 12 | uint(roughness * 255.0 + 0.5) << 24;
+}
+
+vec4 unpack_normal_roughness(uint bits) {
+  const vec2 octahedral = vec2(float(bits & 0xfffu), float((bits >> 12) & 0xfffu)) / 4095.0 * 2.0 - 1.0;
+  return vec4(unit_from_octahedral(octahedral), float(bits >> 24) / 255.0);
+}

@@ -1,5 +1,5 @@
-// A shaded point: material, textures and vertex attributes come together. Needs scene_data, brdf, packing and, with
-// HAS_TEXTURES, textures.
+// A shaded point: material, textures and vertex attributes come together. Needs scene_data, brdf, packing and textures.
+// HAS_TEXTURES: base colours may be textured and vertices coloured; ALL_TEXTURES: the other textures may be there too.
 
 struct Attributes {
   vec3 normal_ws;       // unit, interpolated
@@ -28,16 +28,18 @@ Surface shade_surface(Material material, Attributes at, float footprint) {
   surface.normal_ws = at.normal_ws;
 #ifdef HAS_TEXTURES
   if (material.base_color_texture.slot != 0u)
-    surface.base_color *= sample_texture(material.base_color_texture, at.uv0, at.uv1, footprint);
+    surface.base_color *= sample_color_texture(material.base_color_texture, at.uv0, at.uv1, footprint);
+#endif
+#ifdef ALL_TEXTURES
   if (material.metallic_roughness_texture.slot != 0u) {
-    const vec4 texel = sample_texture(material.metallic_roughness_texture, at.uv0, at.uv1, footprint);
+    const vec4 texel = sample_data_texture(material.metallic_roughness_texture, at.uv0, at.uv1, footprint);
     surface.roughness *= texel.g;
     surface.metallic *= texel.b;
   }
   if (material.emissive_texture.slot != 0u)
-    surface.emission *= sample_texture(material.emissive_texture, at.uv0, at.uv1, footprint).rgb;
+    surface.emission *= sample_color_texture(material.emissive_texture, at.uv0, at.uv1, footprint).rgb;
   if (material.normal_texture.slot != 0u) {
-    vec3 tangent_space = sample_texture(material.normal_texture, at.uv0, at.uv1, footprint).xyz * 2.0 - 1.0;
+    vec3 tangent_space = sample_data_texture(material.normal_texture, at.uv0, at.uv1, footprint).xyz * 2.0 - 1.0;
     tangent_space.xy *= material.normal_scale;
     const vec3 tangent = at.tangent_ws - at.normal_ws * dot(at.normal_ws, at.tangent_ws);
     if (dot(tangent, tangent) > 1e-12) {

@@ -37,16 +37,24 @@ TextureLookup texture_lookup(TextureUse use, vec2 uv0, vec2 uv1, float footprint
   return lookup;
 }
 
-vec4 sample_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+// Colours, decoded from sRGB before filtering.
+vec4 sample_color_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
   const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
-  switch (lookup.array) {
+  switch (lookup.array & 3u) {
     case 0u: return textureLod(srgb_textures[0], lookup.position, lookup.lod);
     case 1u: return textureLod(srgb_textures[1], lookup.position, lookup.lod);
     case 2u: return textureLod(srgb_textures[2], lookup.position, lookup.lod);
-    case 3u: return textureLod(srgb_textures[3], lookup.position, lookup.lod);
-    case 4u: return textureLod(linear_textures[0], lookup.position, lookup.lod);
-    case 5u: return textureLod(linear_textures[1], lookup.position, lookup.lod);
-    case 6u: return textureLod(linear_textures[2], lookup.position, lookup.lod);
+    default: return textureLod(srgb_textures[3], lookup.position, lookup.lod);
+  }
+}
+
+// Data, as it is stored.
+vec4 sample_data_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+  const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
+  switch (lookup.array & 3u) {
+    case 0u: return textureLod(linear_textures[0], lookup.position, lookup.lod);
+    case 1u: return textureLod(linear_textures[1], lookup.position, lookup.lod);
+    case 2u: return textureLod(linear_textures[2], lookup.position, lookup.lod);
     default: return textureLod(linear_textures[3], lookup.position, lookup.lod);
   }
 }
