@@ -22,8 +22,10 @@ std::string_view content_type_of(std::string_view path) {
     std::string_view content_type;
   };
   constexpr Ending kEndings[] = {
-      {".html", "text/html; charset=utf-8"}, {".js", "text/javascript; charset=utf-8"},
-      {".css", "text/css; charset=utf-8"},   {".svg", "image/svg+xml"},
+      {".html", "text/html; charset=utf-8"},
+      {".js", "text/javascript; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},
+      {".svg", "image/svg+xml"},
       {".ico", "image/x-icon"},
   };
   for (const Ending& ending : kEndings) {

@@ -11,9 +11,9 @@ namespace lightwell {
 /// A batch of directions for every pixel of the indirect map, as rays from its representative's surface.
 /// Ray j * slots + slot is direction first + j of the pixel in that slot (shaders/indirect_map.glsl).
 struct Directions {
-  gl::Buffer rays;                                     // Ray
+  gl::Buffer rays;                                   // Ray
   gl::BufferTexture ray_texels{"rays", GL_RGBA32F};  // the same, 2 texels a ray
-  gl::Buffer weights;  // 4 halves: f cos(theta) / pdf, and 1 where there is a ray
+  gl::Buffer weights;                                // 4 halves: f cos(theta) / pdf, and 1 where there is a ray
   gl::BufferTexture weight_texels{"direction weights", GL_RG32UI};
   std::uint32_t first = 0;
   std::uint32_t count = 0;

@@ -15,8 +15,8 @@ const std::vector<std::string>& builtin_scene_names();
 /// A built-in scene by name; kNotFound names the scenes that exist.
 Result<Scene> builtin_scene(std::string_view name);
 
-/// A soft neutral sky and a sun for a scene without punctual lights and environment; the faint sky alone where materials
-/// emit. True if it was added.
+/// A soft neutral sky and a sun for a scene without punctual lights and environment; the faint sky alone where
+/// materials emit. True if it was added.
 bool add_default_light(Scene& scene);
 
 }  // namespace lightwell

@@ -19,16 +19,16 @@ struct Instance {
   glm::mat4 world_from_object{1.0f};           // identity for skinned primitives
   int material = -1;
   int node = -1;
-  int primitive_index = 0;                     // within its mesh; (node, primitive_index) names the instance over time
+  int primitive_index = 0;  // within its mesh; (node, primitive_index) names the instance over time
   std::shared_ptr<const DeformedVertices> deformed;  // null: rigid
 };
 
 struct PlacedLight {
-  Light light;               // animated values
+  Light light;  // animated values
   glm::vec3 position_ws{0.0f};
   glm::vec3 direction_ws{0.0f, 0.0f, -1.0f};  // unit, the way the light shines
   int node = -1;
-  int index = -1;            // in Scene::lights
+  int index = -1;  // in Scene::lights
 };
 
 struct PlacedCamera {
@@ -40,7 +40,7 @@ struct PlacedCamera {
 struct Pose {
   std::vector<Instance> instances;
   std::vector<PlacedLight> lights;
-  std::vector<PlacedCamera> cameras;       // in the order of their nodes
+  std::vector<PlacedCamera> cameras;             // in the order of their nodes
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of all instances, world space; equal when there are none
 };
 
@@ -54,7 +54,8 @@ double animation_duration_s(const Scene& scene);
 /// A camera that shows all of `pose` from above and the front, for a scene that brings none.
 PlacedCamera frame_camera(const Pose& pose, float aspect_ratio);
 
-/// World matrices of all nodes with animations applied; cycles and missing indices are errors of the loader, not checked here.
+/// World matrices of all nodes with animations applied; cycles and missing indices are errors of the loader, not
+/// checked here.
 std::vector<glm::mat4> world_from_nodes(const Scene& scene, double time_s);
 
 }  // namespace lightwell

@@ -75,16 +75,16 @@ struct Material {
   bool double_sided = false;
   bool unlit = false;  // KHR_materials_unlit: base colour is shown as it is and lights nothing
 
-  float ior = 1.5f;                      // KHR_materials_ior
-  float specular_factor = 1.0f;          // KHR_materials_specular
+  float ior = 1.5f;              // KHR_materials_ior
+  float specular_factor = 1.0f;  // KHR_materials_specular
   glm::vec3 specular_color_factor{1.0f};
-  float transmission_factor = 0.0f;      // KHR_materials_transmission
-  float thickness_factor = 0.0f;         // KHR_materials_volume: 0 is thin-walled
-  float attenuation_distance = 0.0f;     // metres; 0 means infinite
+  float transmission_factor = 0.0f;   // KHR_materials_transmission
+  float thickness_factor = 0.0f;      // KHR_materials_volume: 0 is thin-walled
+  float attenuation_distance = 0.0f;  // metres; 0 means infinite
   glm::vec3 attenuation_color{1.0f};
-  float clearcoat_factor = 0.0f;         // KHR_materials_clearcoat
+  float clearcoat_factor = 0.0f;  // KHR_materials_clearcoat
   float clearcoat_roughness = 0.0f;
-  glm::vec3 sheen_color_factor{0.0f};    // KHR_materials_sheen
+  glm::vec3 sheen_color_factor{0.0f};  // KHR_materials_sheen
   float sheen_roughness = 0.0f;
 };
 
@@ -102,12 +102,12 @@ struct Primitive {
   std::vector<glm::vec4> tangents;  // unit xyz, w = handedness: bitangent = w * cross(normal, tangent)
   std::vector<glm::vec2> uv0;
   std::vector<glm::vec2> uv1;
-  std::vector<glm::vec4> colors;            // linear, multiplied with the base colour
-  std::vector<glm::uvec4> joints;           // indices into Skin::joints
-  std::vector<glm::vec4> weights;           // sum to 1
-  std::vector<std::uint32_t> indices;       // 3 per triangle
+  std::vector<glm::vec4> colors;       // linear, multiplied with the base colour
+  std::vector<glm::uvec4> joints;      // indices into Skin::joints
+  std::vector<glm::vec4> weights;      // sum to 1
+  std::vector<std::uint32_t> indices;  // 3 per triangle
   std::vector<MorphTarget> morph_targets;
-  int material = -1;                        // -1: the default material of glTF
+  int material = -1;                             // -1: the default material of glTF
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of `positions`
 };
 
@@ -127,10 +127,10 @@ struct Node {
   std::string name;
   int parent = -1;  // always consistent with `children` and `Scene::roots`
   std::vector<int> children;
-  Transform local;                        // used when `matrix` is empty
-  std::optional<glm::mat4> matrix;        // glTF: a node with a matrix is never animated
+  Transform local;                  // used when `matrix` is empty
+  std::optional<glm::mat4> matrix;  // glTF: a node with a matrix is never animated
   int mesh = -1, camera = -1, light = -1, skin = -1;
-  std::vector<float> weights;             // morph weights of this instance; empty: the mesh's
+  std::vector<float> weights;  // morph weights of this instance; empty: the mesh's
   bool visible = true;
 };
 
@@ -140,27 +140,27 @@ enum class LightKind : std::uint8_t { kDirectional, kPoint, kSpot };
 struct Light {
   std::string name;
   LightKind kind = LightKind::kPoint;
-  glm::vec3 color{1.0f};     // linear
-  float intensity = 1.0f;    // lux for directional, candela for point and spot
-  float range_m = 0.0f;      // 0: infinite
-  float inner_cone_angle = 0.0f;               // radians
-  float outer_cone_angle = 0.78539816339f;     // radians, inner < outer <= pi/2
+  glm::vec3 color{1.0f};                    // linear
+  float intensity = 1.0f;                   // lux for directional, candela for point and spot
+  float range_m = 0.0f;                     // 0: infinite
+  float inner_cone_angle = 0.0f;            // radians
+  float outer_cone_angle = 0.78539816339f;  // radians, inner < outer <= pi/2
 };
 
 struct Camera {
   std::string name;
   bool perspective = true;
-  float yfov = 0.8f;            // radians
-  float aspect_ratio = 0.0f;    // kept for writing; the picture's own size decides. 0: none given
+  float yfov = 0.8f;          // radians
+  float aspect_ratio = 0.0f;  // kept for writing; the picture's own size decides. 0: none given
   float znear = 0.05f;
-  float zfar = 0.0f;            // 0: infinite
+  float zfar = 0.0f;               // 0: infinite
   float xmag = 1.0f, ymag = 1.0f;  // orthographic half sizes
 };
 
 struct Skin {
   std::string name;
-  std::vector<int> joints;                          // nodes
-  std::vector<glm::mat4> joint_from_mesh;           // inverse bind matrices, one per joint
+  std::vector<int> joints;                 // nodes
+  std::vector<glm::mat4> joint_from_mesh;  // inverse bind matrices, one per joint
 };
 
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
@@ -195,7 +195,7 @@ struct Animation {
 
 /// Light from beyond the scene: what a ray that misses everything sees.
 struct Environment {
-  glm::vec3 zenith_radiance{0.0f};   // nit; a gradient from horizon to zenith above, `ground` below
+  glm::vec3 zenith_radiance{0.0f};  // nit; a gradient from horizon to zenith above, `ground` below
   glm::vec3 horizon_radiance{0.0f};
   glm::vec3 ground_radiance{0.0f};
   std::shared_ptr<const ImageHdr> image;  // replaces the gradient when set

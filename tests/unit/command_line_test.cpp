@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-
 #include "server/command_line/camera_argument.h"
 #include "server/command_line/exit_code.h"
 #include "server/command_line/output_file.h"
