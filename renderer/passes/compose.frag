@@ -10,7 +10,9 @@
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 
-layout(location = 0) out vec4 picture;  // a: 1 on lit surfaces, 0 on the background, -1 on unlit surfaces
+// a: 1 + luminance of all light on lit surfaces, so that every view is exposed alike; 0 on the background, -1 on unlit
+// surfaces.
+layout(location = 0) out vec4 picture;
 layout(binding = UNIT_IMAGE_B) uniform sampler2D indirect_map;
 layout(binding = UNIT_IMAGE_C) uniform sampler2D occlusion_distance;
 
@@ -60,20 +62,24 @@ vec3 indirect_light(GBufferPoint point, vec2 uv) {
 }
 
 #ifdef AUXILIARY_VIEWS
-vec3 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
+vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
+  vec3 value = vec3(0.0);
   switch (view) {
-    case kAlbedo: return point.brdf.diffuse_albedo + point.brdf.f0;
-    case kNormal: return point.normal_ws * 0.5 + 0.5;
-    case kDepth: return vec3(point.view_depth_m);
-    default: return textureLod(occlusion_distance, uv, 0.0).rrr;
+    case kAlbedo: value = point.brdf.diffuse_albedo + point.brdf.f0; break;
+    case kNormal: value = point.normal_ws * 0.5 + 0.5; break;
+    case kDepth: value = vec3(point.view_depth_m); break;
+    default: value = textureLod(occlusion_distance, uv, 0.0).rrr;
   }
+  return vec4(value, 1.0 + luminance(value));
 }
 
 vec3 background(vec2 position_px) { return vec3(0.0); }
 #else
-vec3 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
-  const vec3 direct = direct_light(pixel, point) * (view == kIndirect ? 0.0 : 1.0);
-  return direct + indirect_light(point, uv) * (view == kDirect ? 0.0 : 1.0);
+vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
+  const vec3 direct = direct_light(pixel, point);
+  const vec3 indirect = indirect_light(point, uv);
+  const vec3 shown = direct * (view == kIndirect ? 0.0 : 1.0) + indirect * (view == kDirect ? 0.0 : 1.0);
+  return vec4(shown, 1.0 + luminance(direct + indirect));
 }
 
 vec3 background(vec2 position_px) {
@@ -84,8 +90,8 @@ vec3 background(vec2 position_px) {
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy);
   const GBufferPoint point = g_buffer_point(pixel);
+  // Unlit surfaces show their colour as it is, whatever the exposure.
   const bool unlit = texelFetch(g_emission, pixel, 0).a > 0.5;
-  // Unlit surfaces show their colour as it is, whatever the exposure: marked by a negative share.
-  picture = point.valid ? vec4(surface_value(pixel, point, gl_FragCoord.xy / vec2(camera.size_px.xy)), unlit ? -1.0 : 1.0)
-                        : vec4(background(gl_FragCoord.xy), 0.0);
+  const vec4 surface = surface_value(pixel, point, gl_FragCoord.xy / vec2(camera.size_px.xy));
+  picture = point.valid ? vec4(surface.rgb, unlit ? -1.0 : surface.a) : vec4(background(gl_FragCoord.xy), 0.0);
 }

@@ -11,7 +11,7 @@
 
 namespace lightwell {
 
-/// Scene-referred linear BT.709; a: share of lit surface, negative where unlit.
+/// Scene-referred linear BT.709; a: 1 + luminance of all light on lit surfaces, 0 on the background, -1 where unlit.
 struct Picture {
   gl::Texture image;              // RGBA32F
   std::uint32_t accumulated = 0;  // frames averaged in it

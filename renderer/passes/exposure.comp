@@ -2,7 +2,6 @@
 layout(local_size_x = 256) in;
 
 #include "passes/bindings.glsl"
-#include "shaders/packing.glsl"
 
 layout(binding = UNIT_IMAGE_A) uniform sampler2D picture;
 layout(std430, binding = BINDING_EXPOSURE) buffer Exposure {
@@ -26,8 +25,8 @@ void measure(int step_px) {
   for (int i = int(gl_LocalInvocationIndex); i < grid.x * grid.y; i += 256) {
     const ivec2 pixel = min(ivec2(i % grid.x, i / grid.x) * step_px + step_px / 2, size_px - 1);
     const vec4 value = texelFetch(picture, pixel, 0);
-    const float light = luminance(value.rgb);
-    if (value.a < 0.5 || !(light > 1e-7)) continue;
+    const float light = value.a - 1.0;  // of all light, whatever the view shows
+    if (!(light > 1e-6)) continue;
     const float position = (log2(light) - kDarkestEv) / (kBrightestEv - kDarkestEv);
     atomicAdd(bins[clamp(int(position * float(kBins)), 0, kBins - 1)], 1u);
   }
