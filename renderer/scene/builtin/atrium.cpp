@@ -12,7 +12,7 @@ constexpr float kDayS = 60.0f;
 
 /// The way the sun shines at `phase` of its going there and back: it crosses the well from left to right.
 glm::vec3 sun_direction(float phase) {
-  const float swing = std::cos(glm::two_pi<float>() * (phase + 0.69f));
+  const float swing = std::cos(glm::two_pi<float>() * (phase + 0.57f));
   return {0.40f * swing, -1.0f, -0.06f - 0.16f * swing * swing};
 }
 
@@ -28,7 +28,7 @@ Scene make_atrium() {
   sun.name = "sun";
   sun.kind = LightKind::kDirectional;
   sun.color = {1.0f, 0.93f, 0.82f};
-  sun.intensity = 32.0f;
+  sun.intensity = 24.0f;
   const int sun_node =
       scene.light_node(sun, {{0.0f, kDayS / 3, 0.0f}, look_along(sun_direction(0.0f)), glm::vec3(1.0f)});
   animate_rotation(scene.animation("sun", kDayS), sun_node, 16,
