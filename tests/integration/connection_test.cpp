@@ -1,0 +1,315 @@
+// The connection layer with an application of the test's own behind it.
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "server/net/server.h"
+#include "tests/integration/line.h"
+#include "tests/integration/stream_client.h"
+
+namespace lightwell::net {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Answer;
+using test::Line;
+using test::read_answer;
+using test::WebSocketClient;
+
+std::string response(int status, const std::string& body, bool keep_alive) {
+  return "HTTP/1.1 " + std::to_string(status) + " Word\r\nContent-Length: " + std::to_string(body.size()) + "\r\n" +
+         (keep_alive ? "" : "Connection: close\r\n") + "\r\n" + body;
+}
+
+/// Sends every message back.
+class Echo : public WebSocketHandler {
+ public:
+  void opened(std::shared_ptr<WebSocketLink> link) override { link_ = std::move(link); }
+  void received_text(std::string_view text) override {
+    if (text == "close")
+      waiting_.push_back(CloseMessage{4321, "as you wish"});
+    else
+      waiting_.push_back(TextMessage{std::string(text)});
+    link_->wake();
+  }
+  void received_binary(std::string_view bytes) override {
+    auto payload = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end());
+    waiting_.push_back(BinaryMessage{"head:", std::move(payload)});
+    link_->wake();
+  }
+  Outgoing next() override {
+    if (waiting_.empty()) return {};
+    Outgoing message = std::move(waiting_.front());
+    waiting_.pop_front();
+    return message;
+  }
+  void closed() override { link_.reset(); }
+
+ private:
+  std::shared_ptr<WebSocketLink> link_;
+  std::deque<Outgoing> waiting_;
+};
+
+/// Answers with what was asked: "/echo" with the body, "/slow" after a while, "/refused" never.
+class TestApplication : public Application {
+ public:
+  ~TestApplication() override {
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  Admission admit(const RequestHead& head, const Peer&) override {
+    if (head.wants_web_socket) return WebSocketAdmission{std::make_shared<Echo>(), "echo", 1000};
+    if (head.path == "/refused") return Refusal{403, "no", {}};
+    return HttpAdmission{1'000'000};
+  }
+
+  void answer(Request request, std::function<void(std::string)> done) override {
+    std::lock_guard lock(mutex_);
+    threads_.emplace_back([this, request = std::move(request), done = std::move(done)] {
+      if (request.head.path == "/slow") std::this_thread::sleep_for(200ms);
+      if (request.head.path == "/patient") {
+        for (int i = 0; i < 500 && !*request.gone; ++i) std::this_thread::sleep_for(10ms);
+        saw_hang_up = request.gone->load();
+      }
+      done(response(200, request.head.method + " " + request.head.path + " " + request.body, request.keep_alive));
+    });
+  }
+
+  std::string refusal_response(const Refusal& refusal, bool keep_alive) override {
+    return response(refusal.status, refusal.detail, keep_alive);
+  }
+
+  std::atomic<bool> saw_hang_up = false;
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::thread> threads_;
+};
+
+ServerOptions quick_options() {
+  ServerOptions options;
+  options.head_timeout = 300ms;
+  options.idle_timeout = 600ms;
+  options.stall_timeout = 300ms;
+  return options;
+}
+
+class ConnectionTest : public testing::Test {
+ protected:
+  explicit ConnectionTest(const ServerOptions& options = quick_options()) : server_(options) {
+    server_.start(application_);
+  }
+  ~ConnectionTest() override { server_.stop(); }
+
+  int port() const { return server_.port(); }
+
+  TestApplication application_;
+  Server server_;
+};
+
+class PatientConnectionTest : public ConnectionTest {
+ protected:
+  PatientConnectionTest() : ConnectionTest(ServerOptions()) {}
+};
+
+TEST_F(ConnectionTest, AnswersOneRequestAfterAnotherOnOneLine) {
+  Line line(port());
+  for (int i = 0; i < 3; ++i) {
+    line.send("POST /echo HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nhello");
+    const Answer answer = read_answer(line);
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_EQ(answer.body, "POST /echo hello");
+  }
+}
+
+TEST_F(ConnectionTest, AnswersPipelinedRequestsInOrder) {
+  Line line(port());
+  line.send(
+      "GET /a HTTP/1.1\r\nHost: a\r\n\r\nGET /slow HTTP/1.1\r\nHost: a\r\n\r\nGET /b HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(read_answer(line).body, "GET /a ");
+  EXPECT_EQ(read_answer(line).body, "GET /slow ");
+  EXPECT_EQ(read_answer(line).body, "GET /b ");
+}
+
+TEST_F(ConnectionTest, TakesARequestByteByByte) {
+  Line line(port());
+  for (const char c :
+       std::string("POST /x HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n")) {
+    ASSERT_TRUE(line.send(std::string(1, c)));
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(read_answer(line).body, "POST /x abc");
+}
+
+TEST_F(ConnectionTest, SaysContinueWhenAskedTo) {
+  Line line(port());
+  line.send("POST /x HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\nExpect: 100-continue\r\n\r\n");
+  EXPECT_EQ(line.receive_until("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  line.send("ab");
+  EXPECT_EQ(read_answer(line).body, "POST /x ab");
+}
+
+TEST_F(ConnectionTest, RefusesAndCloses) {
+  struct Case {
+    std::string request;
+    int status;
+  };
+  const Case cases[] = {{"GET / HTTP/1.1\r\n\r\n", 400},
+                        {"GET / HTTP/1.1\n\n", 400},
+                        {"\x16\x03\x01\x02", 400},
+                        {"GET / HTTP/1.1\r\nHost: a\r\nX: " + std::string(20'000, 'x'), 431},
+                        {"POST /x HTTP/1.1\r\nHost: a\r\nContent-Length: 1000001\r\n\r\n", 413},
+                        {"POST /x HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n", 400},
+                        {"POST /refused HTTP/1.1\r\nHost: a\r\nContent-Length: 10\r\n\r\n", 403}};
+  for (const Case& bad : cases) {
+    Line line(port());
+    line.send(bad.request);
+    const Answer answer = read_answer(line);
+    EXPECT_EQ(answer.status, bad.status) << bad.request.substr(0, 60);
+    EXPECT_EQ(answer.field("Connection"), "close");
+    line.receive_all();
+    EXPECT_TRUE(line.closed());
+  }
+}
+
+TEST_F(ConnectionTest, GoesOnAfterRefusingARequestWithoutBody) {
+  Line line(port());
+  line.send("GET /refused HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(read_answer(line).status, 403);
+  line.send("GET /a HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(read_answer(line).status, 200);
+}
+
+TEST_F(ConnectionTest, TheAnswerToAnOversizedBodyArrivesThoughTheBodyIsStillBeingSent) {
+  Line line(port());
+  line.send("POST /x HTTP/1.1\r\nHost: a\r\nContent-Length: 900000000\r\n\r\n" + std::string(400'000, 'x'));
+  EXPECT_EQ(read_answer(line).status, 413);
+}
+
+TEST_F(ConnectionTest, ClosesWhatStalls) {
+  Line idle(port()), half_head(port()), half_body(port());
+  half_head.send("GET / HT");
+  half_body.send("POST /x HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nhel");
+  const auto start = std::chrono::steady_clock::now();
+  for (Line* line : {&half_head, &half_body, &idle}) {
+    EXPECT_EQ(line->receive_all(), "");
+    EXPECT_TRUE(line->closed());
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+}
+
+TEST_F(ConnectionTest, TellsTheWorkerWhenTheClientHangsUp) {
+  {
+    Line line(port());
+    line.send("GET /patient HTTP/1.1\r\nHost: a\r\n\r\n");
+    std::this_thread::sleep_for(50ms);
+  }
+  for (int i = 0; i < 200 && !application_.saw_hang_up; ++i) std::this_thread::sleep_for(10ms);
+  EXPECT_TRUE(application_.saw_hang_up);
+}
+
+TEST_F(ConnectionTest, DrainLetsARequestEndAndClosesTheRest) {
+  Line idle(port()), busy(port());
+  busy.send("GET /slow HTTP/1.1\r\nHost: a\r\n\r\n");
+  std::this_thread::sleep_for(50ms);
+  EXPECT_TRUE(server_.drain(5s));
+  EXPECT_EQ(read_answer(busy).status, 200);
+  idle.receive_all();
+  EXPECT_TRUE(idle.closed());
+  EXPECT_THROW(Line{port()}, std::runtime_error);
+}
+
+TEST_F(PatientConnectionTest, IdleAndHalfwayConnectionsDelayNobody) {
+  std::vector<Line> lines;
+  for (int i = 0; i < 200; ++i) lines.emplace_back(port());
+  for (int i = 0; i < 200; ++i) lines.emplace_back(port()).send("GET /half HTTP/1.1\r\nHos");
+  for (int i = 0; i < 100; ++i)
+    lines.emplace_back(port()).send("POST /x HTTP/1.1\r\nHost: a\r\nContent-Length: 9\r\n\r\nabc");
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(test::ask(port(), "GET", "/a").status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 100ms);
+}
+
+TEST(ConnectionLimit, TurnsAwayWhatIsTooMany) {
+  TestApplication application;
+  ServerOptions options;
+  options.max_connections = 2;
+  Server server(options);
+  server.start(application);
+  Line first(server.port()), second(server.port());
+  std::this_thread::sleep_for(50ms);
+  Line third(server.port());
+  EXPECT_EQ(read_answer(third).status, 503);
+  first.send("GET /a HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(read_answer(first).status, 200);
+  server.stop();
+}
+
+TEST(Listening, NamesAPortThatIsTaken) {
+  const Server first{ServerOptions()};
+  ServerOptions options;
+  options.port = first.port();
+  try {
+    const Server second(options);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("127.0.0.1:" + std::to_string(first.port())), std::string::npos);
+  }
+}
+
+TEST_F(ConnectionTest, SpeaksWebSocket) {
+  WebSocketClient client;
+  ASSERT_EQ(client.open(port(), "/", {"echo", "", 0}), 101);
+  EXPECT_EQ(client.subprotocol(), "echo");
+  client.send_text("hello");
+  client.send_binary(std::string("\0\1", 2));
+  EXPECT_EQ(client.receive()->bytes, "hello");
+  const auto binary = client.receive();
+  EXPECT_FALSE(binary->is_text);
+  EXPECT_EQ(binary->bytes, std::string("head:\0\1", 7));
+  client.send_text("close");
+  EXPECT_FALSE(client.receive());
+  EXPECT_EQ(client.close_code(), 4321);
+  EXPECT_EQ(client.close_reason(), "as you wish");
+}
+
+TEST_F(ConnectionTest, ClosesBrokenWebSocketsAsRfc6455Says) {
+  struct Case {
+    std::string bytes;
+    int code;
+  };
+  using namespace std::string_literals;
+  const std::string mask(4, '\0');
+  const Case cases[] = {{"\x81\x05hello"s, 1002},                                      // not masked
+                        {"\x83\x80"s + mask, 1002},                                    // an opcode that is not used
+                        {"\xc1\x80"s + mask, 1002},                                    // a bit that no extension uses
+                        {"\x80\x80"s + mask, 1002},                                    // a continuation of nothing
+                        {"\x09\x80"s + mask, 1002},                                    // a fragmented ping
+                        {"\x89\xfe\x00\x7e"s + mask + std::string(126, 'x'), 1002},    // a ping too long
+                        {"\x81\x82"s + mask + "\xc3\x28"s, 1007},                      // no UTF-8
+                        {"\x81\xfe\x07\xd0"s + mask + std::string(2000, 'x'), 1009}};  // too large
+  for (const Case& bad : cases) {
+    WebSocketClient client;
+    ASSERT_EQ(client.open(port(), "/", {"", "", 0}), 101);
+    client.send_raw(bad.bytes);
+    EXPECT_FALSE(client.receive(3s));
+    EXPECT_EQ(client.close_code(), bad.code);
+  }
+  EXPECT_EQ(test::ask(port(), "GET", "/a").status, 200);
+}
+
+TEST_F(ConnectionTest, JoinsFragmentsAndAnswersPings) {
+  using namespace std::string_literals;
+  const std::string mask(4, '\0');
+  WebSocketClient client;
+  ASSERT_EQ(client.open(port(), "/", {"", "", 0}), 101);
+  client.send_raw("\x01\x82"s + mask + "he" + "\x89\x80"s + mask + "\x80\x83"s + mask + "llo");
+  const auto message = client.receive();
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->bytes, "hello");
+}
+
+}  // namespace
+}  // namespace lightwell::net
