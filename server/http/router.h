@@ -1,0 +1,29 @@
+// Requests to the handlers of their routes, by cpp-httplib. It never sees a socket, nor a byte that the connection
+// layer has not checked: it is given a head written anew from what was understood, and the body beside it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "server/http/route_table.h"
+#include "server/net/application.h"
+
+namespace lightwell::http {
+
+/// Thread-safe once made. Needs a request for which `RouteTable::find` gave a route.
+class Router {
+ public:
+  /// `table` outlives the router.
+  explicit Router(const RouteTable& table);
+  ~Router();
+
+  /// Long work is done on the calling thread. Gives the whole response in bytes; an exception of a handler is a 500
+  /// that tells nothing of it.
+  std::string respond(net::Request request);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lightwell::http

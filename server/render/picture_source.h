@@ -1,0 +1,36 @@
+// What makes pictures, as the render loop sees it: a Renderer, or a stand-in for tests.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/renderer.h"
+
+namespace lightwell {
+
+/// What pictures are made with, for people and for clients.
+struct SourceFacts {
+  std::string device;      // GL_RENDERER
+  std::string device_why;  // why this one was chosen
+  std::string tracer;
+  std::vector<std::string> methods;  // what Settings::method may be
+};
+
+/// Made, used and destroyed on one thread.
+class PictureSource {
+ public:
+  virtual ~PictureSource() = default;
+  virtual SourceFacts facts() = 0;
+  virtual std::unique_ptr<RenderView> make_view() = 0;
+  virtual Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view) = 0;
+};
+
+/// Called on the render thread. Throws as Renderer's constructor does.
+using MakePictureSource = std::function<std::unique_ptr<PictureSource>()>;
+
+/// The renderer of this project, with Embree as its native tracer.
+MakePictureSource renderer_source(const std::string& device, const std::string& tracer);
+
+}  // namespace lightwell

@@ -1,0 +1,189 @@
+#include "server/render/render_loop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace lightwell {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// Render time used up, in seconds. Who has used least goes first. One that comes back from idling starts level with
+/// the others: idling saves nothing up.
+struct Account {
+  double used_s = 0.0;
+};
+
+struct Seat {
+  std::shared_ptr<Subject> subject;
+  std::shared_ptr<Account> account;
+  std::unique_ptr<RenderView> view;
+  bool was_due = false;
+};
+
+/// A source and those it renders for. Lives on the render thread.
+class Studio {
+ public:
+  explicit Studio(std::unique_ptr<PictureSource> source) : source_(std::move(source)) {}
+
+  PictureSource& source() { return *source_; }
+
+  void seat(std::shared_ptr<Subject> subject, Share share) {
+    auto account = share == Share::kJobs ? jobs_ : std::make_shared<Account>(Account{level_s_});
+    seats_.push_back({std::move(subject), std::move(account), nullptr, false});
+  }
+
+  void let_go_of_ended() {
+    std::erase_if(seats_, [](const Seat& seat) { return seat.subject->ended(); });
+  }
+
+  /// The seat whose turn it is, or none; `wake_at` is when one is due next.
+  Seat* choose(SteadyTime now, SteadyTime& wake_at) {
+    Seat* chosen = nullptr;
+    wake_at = kNever;
+    for (Seat& seat : seats_) {
+      const SteadyTime due = seat.subject->due_at(now);
+      const bool is_due = due <= now;
+      if (is_due && !seat.was_due) seat.account->used_s = std::max(seat.account->used_s, level_s_);
+      seat.was_due = is_due;
+      if (!is_due)
+        wake_at = std::min(wake_at, due);
+      else if (!chosen || seat.account->used_s < chosen->account->used_s)
+        chosen = &seat;
+    }
+    return chosen;
+  }
+
+  void render(Seat& seat) {
+    const SteadyTime start = steady_clock::now();
+    level_s_ = std::max(level_s_, seat.account->used_s);
+    Result<Shot> shot = seat.subject->take_shot(start);
+    seat.subject->shot_done(shot ? render(*shot, seat.view) : Result<Frame>(shot.error()));
+    seat.account->used_s += std::chrono::duration<double>(steady_clock::now() - start).count();
+  }
+
+  Result<Frame> render(const Shot& shot, std::unique_ptr<RenderView>& view) {
+    try {
+      if (!view) view = source_->make_view();
+      return source_->render(*shot.scene, shot.request, *view);
+    } catch (const std::exception& error) {
+      view.reset();
+      return Error{ErrorKind::kInternal, "renderer", error.what()};
+    }
+  }
+
+ private:
+  std::unique_ptr<PictureSource> source_;
+  std::vector<Seat> seats_;  // their views go before the source
+  std::shared_ptr<Account> jobs_ = std::make_shared<Account>();
+  double level_s_ = 0.0;  // the account of who was served last: the least of those that wait
+};
+
+}  // namespace
+
+struct RenderLoop::State {
+  void run(const MakePictureSource& make_source, const std::function<Shot()>& warm_up);
+  void serve(Studio& studio);
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::pair<std::shared_ptr<Subject>, Share>> arrivals;
+  bool woken = false;
+  bool stopping = false;
+  std::atomic<bool> warm = false;
+  std::promise<SourceFacts> ready_promise;
+  std::shared_future<SourceFacts> ready = ready_promise.get_future().share();
+  std::thread thread;
+};
+
+void RenderLoop::State::run(const MakePictureSource& make_source, const std::function<Shot()>& warm_up) {
+  std::optional<Studio> studio;
+  try {
+    studio.emplace(make_source());
+    std::unique_ptr<RenderView> view;
+    if (Result<Frame> frame = studio->render(warm_up(), view); !frame)
+      throw std::runtime_error("the first picture failed: " + frame.error().message());
+    ready_promise.set_value(studio->source().facts());
+    warm = true;
+  } catch (...) {
+    ready_promise.set_exception(std::current_exception());
+    return;
+  }
+  serve(*studio);
+}
+
+void RenderLoop::State::serve(Studio& studio) {
+  for (;;) {
+    {
+      std::lock_guard lock(mutex);
+      if (stopping) return;
+      woken = false;
+      for (auto& [subject, share] : arrivals) studio.seat(std::move(subject), share);
+      arrivals.clear();
+    }
+    studio.let_go_of_ended();
+    SteadyTime wake_at = kNever;
+    if (Seat* seat = studio.choose(steady_clock::now(), wake_at)) {
+      studio.render(*seat);
+      continue;
+    }
+    std::unique_lock lock(mutex);
+    const auto something = [this] { return woken || stopping; };
+    if (wake_at == kNever)
+      changed.wait(lock, something);
+    else
+      changed.wait_until(lock, wake_at, something);
+  }
+}
+
+RenderLoop::RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up)
+    : state_(std::make_unique<State>()) {
+  state_->thread = std::thread([state = state_.get(), make_source = std::move(make_source),
+                                warm_up = std::move(warm_up)] { state->run(make_source, warm_up); });
+}
+
+RenderLoop::~RenderLoop() {
+  stop();
+}
+
+void RenderLoop::stop() {
+  {
+    std::lock_guard lock(state_->mutex);
+    state_->stopping = true;
+  }
+  state_->changed.notify_one();
+  if (state_->thread.joinable()) state_->thread.join();
+  std::lock_guard lock(state_->mutex);
+  state_->arrivals.clear();
+}
+
+std::shared_future<SourceFacts> RenderLoop::ready() const {
+  return state_->ready;
+}
+
+bool RenderLoop::is_ready() const {
+  return state_->warm;
+}
+
+void RenderLoop::add(std::shared_ptr<Subject> subject, Share share) {
+  {
+    std::lock_guard lock(state_->mutex);
+    if (state_->stopping) return;
+    state_->arrivals.emplace_back(std::move(subject), share);
+    state_->woken = true;
+  }
+  state_->changed.notify_one();
+}
+
+void RenderLoop::wake() {
+  {
+    std::lock_guard lock(state_->mutex);
+    state_->woken = true;
+  }
+  state_->changed.notify_one();
+}
+
+}  // namespace lightwell

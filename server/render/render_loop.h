@@ -1,0 +1,40 @@
+// The one thread that owns the graphics device: renders for many subjects, each its fair share of the time.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "server/render/picture_source.h"
+#include "server/render/subject.h"
+
+namespace lightwell {
+
+/// Whose time a subject's pictures are made in: every subject of kOwn has a share, all of kJobs have one together.
+enum class Share { kOwn, kJobs };
+
+class RenderLoop {
+ public:
+  /// Starts the thread, which makes the source and renders what `warm_up` gives once. `ready` tells when that is done.
+  RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up);
+  ~RenderLoop();  // stops
+  RenderLoop(const RenderLoop&) = delete;
+  RenderLoop& operator=(const RenderLoop&) = delete;
+
+  /// What pictures are made with, once the first has been made; or the exception that `make_source` or `warm_up` threw.
+  std::shared_future<SourceFacts> ready() const;
+  bool is_ready() const;
+
+  void add(std::shared_ptr<Subject> subject, Share share);
+  /// A subject's answers may have changed: it is due, or has ended. Cheap, from any thread.
+  void wake();
+
+  /// Ends after the picture being made, and lets go of all subjects, here and from now on.
+  void stop();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lightwell

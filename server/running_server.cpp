@@ -1,0 +1,33 @@
+#include "server/running_server.h"
+
+namespace lightwell {
+
+RunningServer::RunningServer(const ServeOptions& options, MakePictureSource make_source)
+    : base_path_(options.base_path), net_(net_options(options)), service_(options, std::move(make_source)) {
+  net_.start(service_);
+}
+
+RunningServer::~RunningServer() {
+  net_.stop();      // nobody calls the service any more
+  service_.stop();  // nobody answers any more
+}
+
+std::string RunningServer::url() const {
+  return "http://" + net_.host_in_url() + ":" + std::to_string(net_.port()) + base_path_ + "/";
+}
+
+bool RunningServer::drain(std::chrono::milliseconds limit) {
+  service_.drain();
+  return net_.drain(limit);
+}
+
+net::ServerOptions RunningServer::net_options(const ServeOptions& options) {
+  net::ServerOptions result;
+  result.host = options.host;
+  result.port = options.port;
+  result.max_connections = options.limits.max_connections;
+  result.max_bodies_bytes = 2 * options.limits.max_upload_bytes + (64u << 20);
+  return result;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,62 @@
+// The scenes this server knows by name: the built-in ones, the one from the command line, and what clients upload.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+
+#include "protocol/messages.h"
+#include "server/scenes/staged_scene.h"
+#include "server/serve.h"
+
+namespace lightwell {
+
+/// Thread-safe. Scenes are immutable and shared: who holds one keeps it, whatever happens to its name.
+class SceneStore {
+ public:
+  explicit SceneStore(const ServeLimits& limits) : limits_(limits) {}
+
+  /// Makes all built-in scenes that are not there yet.
+  void add_builtin_scenes();
+  /// Loads what the command line names: builtin:NAME or a file, which is known by its stem from then on.
+  /// Gives that name. Sessions that name no scene open it.
+  Result<std::string> add_from_command_line(const std::string& scene);
+
+  struct Stored {
+    protocol::SceneEntry entry;
+    bool created = false;  // not replaced
+  };
+  /// Parses a .glb and stores it under a name; long work, no thread but the caller waits. All or nothing.
+  protocol::Decoded<Stored> upload(const std::string& name, std::span<const std::byte> glb);
+
+  /// Problem: 404 if there is none, 409 if it is built in.
+  std::optional<protocol::Problem> remove(const std::string& name);
+
+  std::shared_ptr<const StagedScene> find(const std::string& name) const;
+  /// First the one from the command line: what a viewer opens; then the built-in ones; then by name.
+  std::vector<protocol::SceneEntry> entries() const;
+
+ private:
+  struct Entry {
+    protocol::SceneEntry entry;
+    std::shared_ptr<const StagedScene> scene;
+    std::uint64_t uploaded_bytes = 0;
+    bool uploaded = false;
+  };
+
+  void add_builtin(const std::string& name);
+  std::optional<protocol::Problem> refuse_upload(const std::string& name, std::uint64_t bytes) const;
+
+  const ServeLimits limits_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Entry> scenes_;
+  std::string first_;  // from the command line
+};
+
+/// There is no scene of that name: 404 where it is the resource, 422 where a body names it.
+protocol::Problem no_such_scene(const std::string& name, int status, std::string pointer = {});
+
+}  // namespace lightwell

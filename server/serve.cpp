@@ -1,0 +1,90 @@
+#include "server/serve.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <signal.h>
+
+#include <chrono>
+
+#include "server/running_server.h"
+
+namespace lightwell {
+namespace {
+
+constexpr auto kDrainLimit = std::chrono::seconds(15);
+constexpr auto kReadyPoll = std::chrono::milliseconds(20);  // while starting, for signals
+
+sigset_t stop_signals() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  ::sigaddset(&set, SIGINT);
+  ::sigaddset(&set, SIGTERM);
+  return set;
+}
+
+/// While one lives, SIGINT and SIGTERM of this process come to `wait` instead of ending it. Made before any thread is.
+class StopSignals {
+ public:
+  StopSignals() : set_(stop_signals()) { ::pthread_sigmask(SIG_BLOCK, &set_, &before_); }
+  ~StopSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  void wait() const {
+    int which = 0;
+    ::sigwait(&set_, &which);
+  }
+  /// True if one came within the time.
+  bool wait_for(std::chrono::milliseconds limit) const {
+    const timespec time{limit.count() / 1000, (limit.count() % 1000) * 1'000'000};
+    return ::sigtimedwait(&set_, nullptr, &time) > 0;
+  }
+
+ private:
+  sigset_t set_;
+  sigset_t before_;
+};
+
+/// False if a signal came first.
+bool wait_until_ready(const std::shared_future<SourceFacts>& ready, const StopSignals& signals) {
+  while (ready.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    if (signals.wait_for(kReadyPoll)) return false;
+  return true;
+}
+
+void run(const ServeOptions& options, const StopSignals& signals) {
+  const auto start = std::chrono::steady_clock::now();
+  fmt::print(stderr, "Loading {} and compiling shaders\n", options.scene);
+  RunningServer server(options, renderer_source(options.device, options.tracer));
+  if (!wait_until_ready(server.ready(), signals)) return;
+  const SourceFacts facts = server.ready().get();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  fmt::print(stderr, "Ready after {:.1f} s: {} ({}), tracer {}\n", took.count(), facts.device, facts.device_why,
+             facts.tracer);
+  fmt::print("Lightwell is at {}\n", server.url());
+  std::fflush(stdout);
+  signals.wait();
+  fmt::print(stderr, "Stopping: what is in flight is finished first\n");
+  if (!server.drain(kDrainLimit)) fmt::print(stderr, "Some connections did not end in time\n");
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options) {
+  const StopSignals signals;
+  try {
+    run(options, signals);
+    return 0;
+  } catch (const SceneRefused& refused) {
+    fmt::print(stderr, "{}\n", refused.what());
+    return 3;
+  } catch (const gl::NoDevice& none) {
+    fmt::print(stderr, "{}\n", none.what());
+    return 4;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,237 @@
+#include "server/service.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <thread>
+
+#include "server/http/router.h"
+#include "server/origin.h"
+#include "server/services.h"
+
+namespace lightwell {
+namespace {
+
+using net::Refusal;
+
+constexpr std::size_t kQuickWorkers = 4;
+constexpr std::size_t kLongWorkers = 8;  // most of them wait for the render thread
+constexpr std::size_t kMostQuickWaiting = 1024;
+constexpr std::size_t kMostLongWaiting = 64;
+constexpr std::size_t kEncoders = 2;
+constexpr auto kHousekeepingInterval = std::chrono::seconds(1);
+constexpr glm::ivec2 kWarmUpSize(64, 64);
+
+/// The stream's session id, if `path` is that of a stream.
+std::optional<std::string> session_of_stream(std::string_view path) {
+  constexpr std::string_view kBefore = "/v1/sessions/", kAfter = "/stream";
+  if (!http::matches("/v1/sessions/{id}/stream", path)) return {};
+  return std::string(path.substr(kBefore.size(), path.size() - kBefore.size() - kAfter.size()));
+}
+
+bool lists_subprotocol(std::string_view list) {
+  while (!list.empty()) {
+    const auto comma = std::min(list.find(','), list.size());
+    std::string_view item = list.substr(0, comma);
+    while (item.starts_with(' ')) item.remove_prefix(1);
+    while (item.ends_with(' ')) item.remove_suffix(1);
+    if (item == protocol::kSubprotocol) return true;
+    list.remove_prefix(std::min(comma + 1, list.size()));
+  }
+  return false;
+}
+
+Refusal busy(std::string detail) {
+  return {503, std::move(detail), {{"Retry-After", "1"}}};
+}
+
+Refusal refusal_of(const protocol::Problem& problem) {
+  return {problem.status, problem.detail, {}};
+}
+
+}  // namespace
+
+struct Service::State {
+  State(const ServeOptions& serve_options, MakePictureSource make_source);
+
+  void load_scenes();
+  Shot warm_up_shot();
+  void keep_house();
+  net::Admission admit_stream(const net::RequestHead& head, const std::string& session_id);
+  std::optional<Refusal> check_state(std::string_view path) const;
+  /// The path without the base path; none if a proxy's user must be sent to the base path's "/".
+  std::optional<std::string> path_below_base(const std::string& path) const;
+
+  const ServeOptions options;
+  SceneStore scenes;
+  SessionStore sessions;
+  SessionSurroundings surroundings;
+  std::atomic<bool> draining = false;
+  std::promise<std::string> first_scene_promise;  // its name, or SceneRefused
+  std::shared_future<std::string> first_scene = first_scene_promise.get_future().share();
+  std::atomic<bool> scenes_loaded = false;
+
+  RenderLoop render_loop;
+  std::unique_ptr<WorkerPool> encoders, quick_workers, long_workers;
+  http::RouteTable routes;
+  std::unique_ptr<Services> services;
+  std::unique_ptr<http::Router> router;
+
+  std::mutex mutex;
+  std::condition_variable stopped;
+  bool stopping = false;
+  std::thread loader, housekeeper;
+};
+
+Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source)
+    : options(serve_options),
+      scenes(options.limits),
+      sessions(options.limits),
+      surroundings{{scenes, options.limits, options.settings},
+                   [this] { render_loop.wake(); },
+                   [this] { return render_loop.is_ready() ? render_loop.ready().get().device : std::string(); },
+                   [this] {
+                     return render_loop.is_ready() ? render_loop.ready().get().methods
+                                                   : std::vector<std::string>{"thesis"};
+                   }},
+      render_loop(std::move(make_source), [this] { return warm_up_shot(); }),
+      encoders(std::make_unique<WorkerPool>(kEncoders,
+                                            std::size_t{2} * static_cast<std::size_t>(options.limits.max_sessions))),
+      quick_workers(std::make_unique<WorkerPool>(kQuickWorkers, kMostQuickWaiting)),
+      long_workers(std::make_unique<WorkerPool>(kLongWorkers, kMostLongWaiting)) {
+  services =
+      std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings, draining});
+  add_health_routes(routes, *services);
+  add_scene_routes(routes, *services);
+  add_session_routes(routes, *services);
+  add_render_routes(routes, *services);
+  add_viewer_routes(routes, options.web_client_dir);
+  router = std::make_unique<http::Router>(routes);
+  loader = std::thread([this] { load_scenes(); });
+  housekeeper = std::thread([this] { keep_house(); });
+}
+
+void Service::State::load_scenes() {
+  try {
+    const Result<std::string> name = scenes.add_from_command_line(options.scene);
+    if (!name) throw SceneRefused(name.error().message());
+    first_scene_promise.set_value(*name);
+    scenes.add_builtin_scenes();
+    scenes_loaded = true;
+  } catch (...) {
+    first_scene_promise.set_exception(std::current_exception());
+  }
+}
+
+/// On the render thread, when the shaders are compiled: waits for the scene. Its geometry is on the device afterwards.
+Shot Service::State::warm_up_shot() {
+  const std::shared_ptr<const StagedScene> stage = scenes.find(first_scene.get());
+  Shot shot;
+  shot.scene = stage->scene();
+  shot.request.settings = options.settings;
+  shot.request.size_px = kWarmUpSize;
+  if (auto camera = stage->place(protocol::DefaultCamera(), 0.0, 1.0f)) shot.request.camera = std::move(camera).value();
+  return shot;
+}
+
+void Service::State::keep_house() {
+  std::unique_lock lock(mutex);
+  while (!stopped.wait_for(lock, kHousekeepingInterval, [this] { return stopping; })) {
+    lock.unlock();
+    sessions.keep_house(std::chrono::steady_clock::now());
+    lock.lock();
+  }
+}
+
+std::optional<std::string> Service::State::path_below_base(const std::string& path) const {
+  if (options.base_path.empty() || !path.starts_with(options.base_path)) return path;
+  const std::string below = path.substr(options.base_path.size());
+  if (below.empty()) return {};
+  return below.starts_with('/') ? below : path;
+}
+
+std::optional<Refusal> Service::State::check_state(std::string_view path) const {
+  const bool about_health = path == "/healthz" || path == "/readyz";
+  if (draining && !about_health) return busy("the server is stopping");
+  if (!scenes_loaded && path.starts_with("/v1/")) return busy("the scenes are being loaded");
+  return {};
+}
+
+net::Admission Service::State::admit_stream(const net::RequestHead& head, const std::string& session_id) {
+  if (!head.wants_web_socket)
+    return Refusal{426, "a stream is a WebSocket", {{"Upgrade", "websocket"}, {"Connection", "Upgrade"}}};
+  const std::string_view subprotocols = head.field("sec-websocket-protocol");
+  const bool named = lists_subprotocol(subprotocols);
+  if (!subprotocols.empty() && !named) return Refusal{400, "the WebSocket subprotocol spoken here is lightwell.v1", {}};
+  const std::shared_ptr<Session> session = sessions.find(session_id);
+  if (!session) return Refusal{404, "there is no such session, or it has ended", {}};
+  auto viewer = session->open_stream();
+  if (!viewer) return refusal_of(viewer.problem());
+  return net::WebSocketAdmission{std::move(viewer).value(),
+                                 named ? std::string(protocol::kSubprotocol) : std::string()};
+}
+
+Service::Service(const ServeOptions& options, MakePictureSource make_source)
+    : state_(std::make_unique<State>(options, std::move(make_source))) {}
+
+Service::~Service() {
+  stop();
+}
+
+std::shared_future<SourceFacts> Service::ready() const {
+  return state_->render_loop.ready();
+}
+
+void Service::drain() {
+  state_->draining = true;
+  state_->sessions.end_all(protocol::CloseCode::kDraining, "the server is stopping", true);
+}
+
+void Service::stop() {
+  {
+    std::lock_guard lock(state_->mutex);
+    state_->stopping = true;
+  }
+  state_->stopped.notify_all();
+  if (state_->loader.joinable()) state_->loader.join();
+  if (state_->housekeeper.joinable()) state_->housekeeper.join();
+  state_->render_loop.stop();  // first: workers wait for it
+  state_->long_workers.reset();
+  state_->quick_workers.reset();
+  state_->encoders.reset();
+}
+
+net::Admission Service::admit(const net::RequestHead& head, const net::Peer&) {
+  const std::optional<std::string> path = state_->path_below_base(head.path);
+  if (!path)
+    return Refusal{308, "the viewer is at " + head.path + "/", {{"Location", state_->options.base_path + "/"}}};
+  if (auto refusal = state_->check_state(*path)) return *refusal;
+  if (!origin_allowed(head, state_->options.allowed_origins))
+    return Refusal{403, "requests of pages from " + std::string(head.field("origin")) + " are not served", {}};
+  const auto session_id = session_of_stream(*path);
+  if (session_id && head.method == "GET") return state_->admit_stream(head, *session_id);
+
+  net::RequestHead below = head;
+  below.path = *path;
+  const auto found = state_->routes.find(below);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
+  return net::HttpAdmission{std::get<const http::Route*>(found)->max_body_bytes};
+}
+
+void Service::answer(net::Request request, std::function<void(std::string)> done) {
+  request.head.path = state_->path_below_base(request.head.path).value_or("/");
+  const auto found = state_->routes.find(request.head);
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return done(refusal_response(*refusal, request.keep_alive));
+  const bool quick = std::get<const http::Route*>(found)->effort == http::Effort::kQuick;
+  const bool keep_alive = request.keep_alive;
+  WorkerPool& workers = quick ? *state_->quick_workers : *state_->long_workers;
+  auto shared = std::make_shared<net::Request>(std::move(request));
+  const bool taken =
+      workers.try_post([router = state_->router.get(), shared, done] { done(router->respond(std::move(*shared))); });
+  if (!taken) done(refusal_response(busy("too many requests wait already"), keep_alive));
+}
+
+std::string Service::refusal_response(const Refusal& refusal, bool keep_alive) {
+  return http::wire_format(http::refusal_response(refusal), keep_alive);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,137 @@
+#include "server/session/session.h"
+
+#include <algorithm>
+
+#include "server/convert.h"
+
+namespace lightwell {
+
+using protocol::make_problem;
+using protocol::Problem;
+using std::chrono::steady_clock;
+
+Session::Session(std::string id, SessionState state, const SessionSurroundings& surroundings)
+    : id_(std::move(id)),
+      surroundings_(surroundings),
+      state_(std::make_shared<const SessionState>(std::move(state))),
+      touched_(steady_clock::now()) {}
+
+protocol::Session Session::describe() const {
+  const std::shared_ptr<const SessionState> state = this->state();
+  protocol::Session session;
+  session.id = id_;
+  session.scene = state->scene_name;
+  session.width = static_cast<std::uint16_t>(state->size_px.x);
+  session.height = static_cast<std::uint16_t>(state->size_px.y);
+  session.camera = state->camera;
+  session.settings = spec_of(state->settings);
+  session.playing = state->clock.playing();
+  session.time_s = state->clock.time_s(steady_clock::now());
+  session.revision = state->revision;
+  session.viewers = static_cast<std::uint32_t>(audience_.size());
+  return session;
+}
+
+protocol::Decoded<protocol::Session> Session::apply(const protocol::SessionPatch& patch) {
+  if (auto problem = change(patch, nullptr, 0)) return *problem;
+  return describe();
+}
+
+std::optional<Problem> Session::apply_input(const protocol::Input& input, Viewer& by) {
+  return change(input.change, &by, input.seq);
+}
+
+std::optional<Problem> Session::change(const protocol::SessionPatch& patch, const Viewer* by, std::uint32_t seq) {
+  std::lock_guard one_at_a_time(change_mutex_);
+  if (ended_) return make_problem(404, "the session has ended");
+  protocol::Decoded<SessionState> next = changed(*state(), patch, surroundings_.rules, steady_clock::now());
+  if (!next) return next.problem();
+  const std::uint64_t revision = next->revision;
+  {
+    std::lock_guard lock(state_mutex_);
+    state_ = std::make_shared<const SessionState>(std::move(next).value());
+  }
+  audience_.tell_change(members_of(patch), revision, by, seq);
+  surroundings_.wake_render_loop();
+  return {};
+}
+
+void Session::end(protocol::CloseCode code, const std::string& reason, bool reconnect) {
+  ended_ = true;
+  audience_.end(code, reason, reconnect);
+  surroundings_.wake_render_loop();
+}
+
+void Session::touch() {
+  std::lock_guard lock(state_mutex_);
+  touched_ = steady_clock::now();
+}
+
+SteadyTime Session::idle_since() const {
+  if (audience_.size() > 0) return SteadyTime::max();
+  std::lock_guard lock(state_mutex_);
+  return touched_;
+}
+
+protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream() {
+  auto viewer = std::make_shared<Viewer>(shared_from_this());
+  const auto most = static_cast<std::size_t>(surroundings_.rules.limits.max_viewers_per_session);
+  if (!audience_.join(viewer, most))
+    return make_problem(503, "the session has " + std::to_string(most) + " viewers, as many as it may have");
+  if (ended_) viewer->end(protocol::CloseCode::kSessionEnded, "the session was ended", false);
+  return viewer;
+}
+
+protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello, Viewer& viewer) {
+  if (std::find(hello.codecs.begin(), hello.codecs.end(), "jpeg") == hello.codecs.end())
+    return make_problem(422, "this server sends jpeg alone, which the client does not take", "/codecs");
+  if (hello.resume) audience_.end_resumed(*hello.resume);
+  if (hello.role == protocol::Role::kDriver) {
+    protocol::SessionPatch size;  // the picture fits the driver's window
+    const int most = surroundings_.rules.limits.max_size_px;
+    size.width = static_cast<std::uint16_t>(std::min<int>(hello.width, most));
+    size.height = static_cast<std::uint16_t>(std::min<int>(hello.height, most));
+    const glm::ivec2 now = state()->size_px;
+    const bool same = now.x == *size.width && now.y == *size.height;
+    if (auto problem = same ? std::nullopt : change(size, nullptr, 0)) return *problem;
+  }
+  const std::shared_ptr<const SessionState> state = this->state();
+  if (!state->moving()) audience_.show_latest(viewer, state->revision);
+  protocol::Welcome answer = welcome(*state);
+  answer.role = hello.role;
+  return answer;
+}
+
+protocol::Welcome Session::welcome(const SessionState& state) const {
+  const ServeLimits& limits = surroundings_.rules.limits;
+  protocol::Welcome welcome;
+  welcome.session = id_;
+  welcome.codec = "jpeg";
+  welcome.scene = state.scene_name;
+  welcome.scenes = surroundings_.rules.scenes.entries();
+  welcome.settings = spec_of(state.settings);
+  welcome.camera = state.camera;
+  welcome.playing = state.clock.playing();
+  welcome.time_s = state.clock.time_s(steady_clock::now());
+  welcome.device = surroundings_.device();
+  welcome.limits.max_width = welcome.limits.max_height = static_cast<std::uint32_t>(limits.max_size_px);
+  welcome.limits.max_samples = static_cast<std::uint32_t>(limits.max_samples);
+  welcome.limits.max_upload_bytes = limits.max_upload_bytes;
+  welcome.methods = surroundings_.methods();
+  welcome.bounds = state.stage->bounds();
+  welcome.view = view_at(state, welcome.time_s);
+  welcome.lights = state.stage->lights(welcome.time_s);
+  return welcome;
+}
+
+std::shared_ptr<const SessionState> Session::state() const {
+  std::lock_guard lock(state_mutex_);
+  return state_;
+}
+
+void Session::leave(const Viewer& viewer) {
+  audience_.leave(viewer);
+  touch();
+}
+
+}  // namespace lightwell

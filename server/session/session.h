@@ -1,0 +1,71 @@
+// A session: its state, changed by requests and by its viewers' inputs, and the viewers themselves.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+
+#include "server/session/session_state.h"
+#include "server/stream/audience.h"
+#include "server/stream/director.h"
+
+namespace lightwell {
+
+/// What all sessions of a server share.
+struct SessionSurroundings {
+  SessionRules rules;
+  std::function<void()> wake_render_loop;
+  std::function<std::string()> device;  // for welcomes: what pictures are made with
+  std::function<std::vector<std::string>()> methods;
+};
+
+/// Thread-safe. Readers get a state that never changes; writers make the next one, one at a time.
+class Session : public ViewerHost, public DirectedSession, public std::enable_shared_from_this<Session> {
+ public:
+  Session(std::string id, SessionState state, const SessionSurroundings& surroundings);
+
+  const std::string& id() const { return id_; }
+  protocol::Session describe() const;
+  /// All of `patch` or nothing.
+  protocol::Decoded<protocol::Session> apply(const protocol::SessionPatch& patch);
+
+  /// A new stream's end, which belongs to the audience until its connection closes. Problem: 503 if there are too many.
+  protocol::Decoded<std::shared_ptr<Viewer>> open_stream();
+
+  /// Closes all streams; no pictures are made from here on.
+  void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
+
+  /// Someone has asked for it: it is not idle.
+  void touch();
+  /// Since when nobody watched or asked; never while someone watches.
+  SteadyTime idle_since() const;
+
+  // ViewerHost
+  protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) override;
+  std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) override;
+  std::shared_ptr<const SessionState> state() const override;
+  void window_opened() override { surroundings_.wake_render_loop(); }
+  void leave(const Viewer& viewer) override;
+
+  // DirectedSession
+  Audience& audience() override { return audience_; }
+  bool ended() const override { return ended_; }
+  void wake_render_loop() override { surroundings_.wake_render_loop(); }
+
+ private:
+  std::optional<protocol::Problem> change(const protocol::SessionPatch& patch, const Viewer* by, std::uint32_t seq);
+  protocol::Welcome welcome(const SessionState& state) const;
+
+  const std::string id_;
+  const SessionSurroundings& surroundings_;
+  Audience audience_;
+  std::atomic<bool> ended_ = false;
+
+  std::mutex change_mutex_;  // one change at a time; taken before state_mutex_
+  mutable std::mutex state_mutex_;
+  std::shared_ptr<const SessionState> state_;
+  SteadyTime touched_;
+};
+
+}  // namespace lightwell

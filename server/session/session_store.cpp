@@ -1,0 +1,69 @@
+#include "server/session/session_store.h"
+
+#include "server/random_id.h"
+
+namespace lightwell {
+
+protocol::Decoded<std::shared_ptr<Session>> SessionStore::add(SessionState state,
+                                                              const SessionSurroundings& surroundings) {
+  auto session = std::make_shared<Session>(random_id(), std::move(state), surroundings);
+  std::lock_guard lock(mutex_);
+  if (sessions_.size() >= static_cast<std::size_t>(limits_.max_sessions))
+    return protocol::make_problem(
+        503, "there are " + std::to_string(limits_.max_sessions) + " sessions already, as many as this server serves");
+  sessions_.emplace(session->id(), session);
+  return session;
+}
+
+std::shared_ptr<Session> SessionStore::find(const std::string& id) {
+  std::lock_guard lock(mutex_);
+  const auto found = sessions_.find(id);
+  if (found == sessions_.end()) return nullptr;
+  found->second->touch();
+  return found->second;
+}
+
+bool SessionStore::end(const std::string& id) {
+  std::shared_ptr<Session> ended;
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = sessions_.find(id);
+    if (found == sessions_.end()) return false;
+    ended = std::move(found->second);
+    sessions_.erase(found);
+  }
+  ended->end(protocol::CloseCode::kSessionEnded, "the session was ended", false);
+  return true;
+}
+
+void SessionStore::keep_house(SteadyTime now) {
+  const auto patience = std::chrono::duration<double>(limits_.session_idle_s);
+  std::vector<std::shared_ptr<Session>> idle, alive;
+  {
+    std::lock_guard lock(mutex_);
+    for (auto it = sessions_.begin(); it != sessions_.end();) {
+      const SteadyTime since = it->second->idle_since();
+      const bool is_idle = since < now && now - since > patience;
+      (is_idle ? idle : alive).push_back(it->second);
+      it = is_idle ? sessions_.erase(it) : std::next(it);
+    }
+  }
+  for (const auto& session : idle) session->end(protocol::CloseCode::kSessionEnded, "nobody watched for long", false);
+  for (const auto& session : alive) session->audience().check_patience(now);
+}
+
+void SessionStore::end_all(protocol::CloseCode code, const std::string& reason, bool reconnect) {
+  std::map<std::string, std::shared_ptr<Session>> all;
+  {
+    std::lock_guard lock(mutex_);
+    all.swap(sessions_);
+  }
+  for (const auto& [id, session] : all) session->end(code, reason, reconnect);
+}
+
+int SessionStore::size() const {
+  std::lock_guard lock(mutex_);
+  return static_cast<int>(sessions_.size());
+}
+
+}  // namespace lightwell

@@ -1,0 +1,43 @@
+// All viewers of one session, and the picture they were shown last.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "server/stream/viewer.h"
+
+namespace lightwell {
+
+/// Thread-safe. Calls viewers without its own lock.
+class Audience {
+ public:
+  /// False if there are `most` already.
+  bool join(std::shared_ptr<Viewer> viewer, std::size_t most);
+  /// Gives one of them the latest picture, if it shows `revision`.
+  void show_latest(Viewer& viewer, std::uint64_t revision) const;
+  void leave(const Viewer& viewer);
+  std::size_t size() const;
+
+  /// Whether someone watches who has fewer pictures on the way, with `in_the_making` that all will get, than may be.
+  bool wants_picture(int in_the_making) const;
+
+  /// Gives everyone a picture, unless a newer one came before.
+  void show(std::shared_ptr<const Picture> picture);
+  /// `by`: the viewer whose input `seq` it was, or null.
+  void tell_change(unsigned members, std::uint64_t revision, const Viewer* by, std::uint32_t seq);
+  void report(const protocol::Problem& problem);
+  void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
+  /// Ends the stream that was given this token, if it is still there.
+  void end_resumed(const std::string& resume_token);
+  void check_patience(SteadyTime now);
+
+ private:
+  std::vector<std::shared_ptr<Viewer>> viewers() const;
+
+  mutable std::mutex mutex_;
+  std::vector<std::shared_ptr<Viewer>> viewers_;
+  std::shared_ptr<const Picture> latest_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,125 @@
+#include "server/stream/director.h"
+
+#include <bit>
+
+#include "server/convert.h"
+#include "server/render/jpeg.h"
+
+namespace lightwell {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr int kSmallPicture = 256 * 256;  // pixels: halved chroma saves little and shows
+
+}  // namespace
+
+Director::Director(std::shared_ptr<DirectedSession> session, WorkerPool& encoders, const DirectorOptions& options)
+    : session_(std::move(session)), encoders_(encoders), options_(options) {}
+
+SteadyTime Director::due_at(SteadyTime now) {
+  const std::shared_ptr<const SessionState> state = session_->state();
+  if (state->revision == failed_revision_) return kNever;  // it would fail again
+  if (!session_->audience().wants_picture(in_the_making_)) return kNever;
+  const SteadyTime next_frame = take_.start + options_.least_frame_time;
+  if (!take_.state || state->revision != take_.state->revision)
+    return take_.kind == Kind::kFresh ? next_frame : now;  // refining gives way at once
+  if (state->moving()) return next_frame;
+  if (accumulated_ >= options_.refining_frames) return kNever;
+  return still_since_ + options_.still_before_refining;
+}
+
+Result<Shot> Director::take_shot(SteadyTime now) {
+  std::shared_ptr<const SessionState> state = session_->state();
+  const bool same = take_.state && take_.state->revision == state->revision && !state->moving();
+  take_.kind = same && accumulated_ > 0 ? Kind::kRefining : Kind::kFresh;
+  take_.state = std::move(state);
+  take_.start = now;
+  ++in_the_making_;
+  if (take_.kind == Kind::kFresh) return take_fresh_shot();
+  return take_refining_shot();
+}
+
+Result<Shot> Director::take_fresh_shot() {
+  const SessionState& state = *take_.state;
+  still_since_ = take_.start;
+  FrameRequest request;
+  request.time_s = state.clock.time_s(take_.start);
+  request.size_px = state.size_px;
+  request.settings = state.settings;
+  auto camera = state.stage->place(state.camera, request.time_s, state.aspect_ratio());
+  if (!camera) return invalid_input(camera.problem().pointer, camera.problem().detail);
+  request.camera = std::move(camera).value();
+  take_.request = request;
+  take_.shown = true;
+  take_.is_final = false;
+  return Shot{state.stage->scene(), std::move(request)};
+}
+
+/// The very same again, added to what is there. Pictures are shown at every doubling: each then has visibly less noise.
+Shot Director::take_refining_shot() {
+  const std::uint32_t frames = accumulated_ + 1;
+  take_.is_final = frames >= options_.refining_frames;
+  take_.shown = take_.is_final || std::has_single_bit(frames);
+  FrameRequest request = take_.request;
+  request.accumulate = true;
+  request.want_display = take_.shown;
+  return Shot{take_.state->stage->scene(), std::move(request)};
+}
+
+void Director::shot_done(Result<Frame> frame) {
+  if (!frame) {
+    --in_the_making_;
+    accumulated_ = 0;
+    failed_revision_ = take_.state->revision;
+    return session_->audience().report(problem_of(frame.error()));
+  }
+  accumulated_ = take_.kind == Kind::kFresh ? 1 : frame->accumulated;
+  if (take_.shown) return encode(std::move(frame).value());
+  --in_the_making_;
+}
+
+void Director::encode(Frame frame) {
+  auto shared = std::make_shared<const Frame>(std::move(frame));
+  const std::uint64_t number = next_number_++;
+  const bool taken = encoders_.try_post([self = shared_from_this(), take = take_, shared, number] {
+    self->show(take, *shared, number);
+    --self->in_the_making_;
+    self->session_->wake_render_loop();
+  });
+  if (!taken) --in_the_making_;
+}
+
+/// On an encoder's thread.
+void Director::show(const Take& take, const Frame& frame, std::uint64_t number) {
+  const SteadyTime start = steady_clock::now();
+  const bool moving = take.kind == Kind::kFresh && frame.size_px.x * frame.size_px.y > kSmallPicture;
+  auto file = encode_jpeg(frame.display_rgbx, frame.size_px, take.is_final ? options_.final_quality : options_.quality,
+                          moving ? Chroma::kHalved : Chroma::kFull);
+  if (!file) return session_->audience().report(problem_of(file.error()));
+
+  auto picture = std::make_shared<Picture>();
+  picture->number = number;
+  picture->revision = take.state->revision;
+  picture->file = std::make_shared<const std::vector<std::uint8_t>>(std::move(file).value());
+  picture->is_final = take.is_final;
+  picture->capture_ms = std::chrono::duration<double, std::milli>(take.start.time_since_epoch()).count();
+  picture->width = static_cast<std::uint16_t>(frame.size_px.x);
+  picture->height = static_cast<std::uint16_t>(frame.size_px.y);
+  const StagedScene& stage = *take.state->stage;
+  picture->placement = std::make_shared<const Placement>(
+      Placement{view_at(*take.state, take.request.time_s), stage.lights(take.request.time_s)});
+  protocol::Stats& stats = picture->stats;
+  for (const StageTime& stage_time : frame.stages)
+    stats.stages.push_back({std::string(stage_time.name), stage_time.ms});
+  stats.render_ms = frame.total_ms;
+  stats.rays = frame.rays;
+  stats.triangles = frame.triangles;
+  stats.exposure_ev = frame.exposure_ev;
+  stats.accumulated = frame.accumulated;
+  stats.time_s = take.request.time_s;
+  stats.encode_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
+  session_->audience().show(std::move(picture));
+}
+
+}  // namespace lightwell

@@ -1,0 +1,72 @@
+// Decides what a session's viewers see next: pictures while something changes, then a finer and finer one, then rest.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "server/render/subject.h"
+#include "server/session/session_state.h"
+#include "server/stream/audience.h"
+#include "server/worker_pool.h"
+
+namespace lightwell {
+
+struct DirectorOptions {
+  std::chrono::milliseconds still_before_refining{200};
+  std::chrono::microseconds least_frame_time{16'600};  // no more than 60 pictures a second
+  std::uint32_t refining_frames = 64;                  // in the final picture
+  int quality = 80;                                    // JPEG, while the picture changes
+  int final_quality = 95;
+};
+
+/// A session as the director sees it.
+class DirectedSession {
+ public:
+  virtual ~DirectedSession() = default;
+  virtual std::shared_ptr<const SessionState> state() const = 0;
+  virtual Audience& audience() = 0;
+  virtual bool ended() const = 0;
+  /// The render loop should ask again.
+  virtual void wake_render_loop() = 0;
+};
+
+/// Called by the render thread; hands frames to `encoders`, so that the next is rendered while the last is encoded.
+class Director : public Subject, public std::enable_shared_from_this<Director> {
+ public:
+  /// `encoders` outlives the director.
+  Director(std::shared_ptr<DirectedSession> session, WorkerPool& encoders, const DirectorOptions& options);
+
+  SteadyTime due_at(SteadyTime now) override;
+  Result<Shot> take_shot(SteadyTime now) override;
+  void shot_done(Result<Frame> frame) override;
+  bool ended() const override { return session_->ended(); }
+
+ private:
+  enum class Kind { kFresh, kRefining };
+  struct Take {  // the shot being made
+    Kind kind = Kind::kFresh;
+    std::shared_ptr<const SessionState> state;
+    FrameRequest request;
+    SteadyTime start{};
+    bool shown = true;  // or only added to what the next one shows
+    bool is_final = false;
+  };
+
+  Result<Shot> take_fresh_shot();
+  Shot take_refining_shot();
+  void encode(Frame frame);
+  void show(const Take& take, const Frame& frame, std::uint64_t number);
+
+  const std::shared_ptr<DirectedSession> session_;
+  WorkerPool& encoders_;
+  const DirectorOptions options_;
+
+  Take take_;
+  SteadyTime still_since_{};       // the last picture that showed a change
+  std::uint32_t accumulated_ = 0;  // frames in the picture
+  std::uint64_t failed_revision_ = 0;
+  std::uint64_t next_number_ = 1;
+  std::atomic<int> in_the_making_ = 0;  // pictures rendered or to be, that viewers have not got yet
+};
+
+}  // namespace lightwell

@@ -1,0 +1,35 @@
+// A session's picture, encoded once and shared among all who watch it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "protocol/messages.h"
+
+namespace lightwell {
+
+/// What moves by itself, as it stands in one picture.
+struct Placement {
+  protocol::FreeCamera view;
+  std::vector<protocol::LightEntry> lights;
+
+  bool operator==(const Placement&) const = default;
+};
+
+struct Picture {
+  std::uint64_t number = 0;  // ascending within the session
+  std::uint64_t revision = 0;
+  std::shared_ptr<const std::vector<std::uint8_t>> file;  // JPEG
+  bool is_final = false;
+  double capture_ms = 0.0;
+  std::uint16_t width = 0, height = 0;
+  protocol::Stats stats;  // fps is filled in by who sends it
+  std::shared_ptr<const Placement> placement;
+};
+
+/// Milliseconds of the server's clock: steady, from an arbitrary beginning.
+double server_clock_ms();
+
+}  // namespace lightwell

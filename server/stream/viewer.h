@@ -1,0 +1,117 @@
+// One stream of a session: what has been sent, what is in flight, what is to be sent next. Never more than the newest
+// of anything waits for a slow client.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "protocol/codec.h"
+#include "server/net/application.h"
+#include "server/session/session_state.h"
+#include "server/stream/picture.h"
+
+namespace lightwell {
+
+inline constexpr int kMostInFlight = 2;  // pictures sent and not acknowledged
+
+class Viewer;
+
+/// What a viewer asks of its session. Called without the viewer's lock.
+class ViewerHost {
+ public:
+  virtual ~ViewerHost() = default;
+  /// Answers a hello. A problem ends the stream.
+  virtual protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) = 0;
+  virtual std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) = 0;
+  virtual std::shared_ptr<const SessionState> state() const = 0;
+  /// The viewer can take a picture again.
+  virtual void window_opened() = 0;
+  virtual void leave(const Viewer& viewer) = 0;
+};
+
+class Viewer : public net::WebSocketHandler {
+ public:
+  explicit Viewer(std::shared_ptr<ViewerHost> host);
+
+  // From the connection, one call at a time.
+  void opened(std::shared_ptr<net::WebSocketLink> link) override;
+  void received_text(std::string_view text) override;
+  void received_binary(std::string_view bytes) override;
+  net::Outgoing next() override;
+  void closed() override;
+
+  // From any thread.
+
+  /// A newer picture than any before. Replaces one that waits to be sent.
+  void offer(std::shared_ptr<const Picture> picture);
+  /// Members of the session changed, in `revision`; `seq` if an input of this viewer did it.
+  void state_changed(unsigned members, std::uint64_t revision, std::optional<std::uint32_t> seq);
+  void report(const protocol::Problem& problem);
+  /// Says bye and closes.
+  void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
+
+  /// Pictures that are on their way to the client, or wait to be.
+  int pictures_on_the_way() const;
+  bool watching() const;
+  const std::string& resume_token() const { return resume_token_; }
+
+  /// Ends the stream of a client that neither acknowledges nor reads, or never said hello.
+  void check_patience(SteadyTime now);
+
+ private:
+  struct Sent {
+    std::uint32_t frame;
+    SteadyTime at;
+  };
+  struct AppliedInput {
+    std::uint64_t revision;
+    std::uint32_t seq;
+  };
+
+  void received(const protocol::Hello& hello);
+  void received(const protocol::Input& input);
+  void received(const protocol::Ack& ack);
+  void received(const protocol::Ping& ping);
+  void refuse_text(std::string_view text, const protocol::Problem& problem);
+  void bad_message(const std::string& reason);
+
+  // With the lock held.
+  bool may_send_picture() const;
+  void queue_text(const protocol::ServerMessage& message);
+  void queue_end(protocol::CloseCode code, const std::string& reason, bool reconnect);
+  std::string take_state_update();
+  std::string take_placement();
+  net::Outgoing take_picture();
+  void note_shown_inputs(std::uint64_t revision);
+  void queue_stats(const Picture& picture, SteadyTime now);
+  void wake();
+
+  const std::shared_ptr<ViewerHost> host_;
+  const std::string resume_token_;
+  const SteadyTime created_;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<net::WebSocketLink> link_;
+  enum class Stage { kAwaitingHello, kWatching, kEnding, kClosed } stage_ = Stage::kAwaitingHello;
+  bool may_drive_ = false;
+  std::deque<std::string> texts_;             // small and few: welcome, pongs, errors, bye
+  std::optional<net::CloseMessage> closing_;  // after the texts
+  SteadyTime ending_since_{};
+  unsigned changed_members_ = 0;
+  std::optional<std::uint32_t> changed_by_seq_;
+  std::shared_ptr<const Picture> waiting_;      // the newest picture, not sent yet
+  std::shared_ptr<const Placement> placement_;  // sent last
+  std::deque<Sent> in_flight_;
+  std::uint32_t last_frame_ = 0;
+  std::uint32_t last_seq_ = 0;        // received
+  std::deque<AppliedInput> applied_;  // inputs no picture has shown yet
+  std::uint32_t shown_seq_ = 0;
+  std::deque<SteadyTime> sent_times_;  // of the last second
+  SteadyTime stats_sent_{};
+};
+
+}  // namespace lightwell

@@ -1,0 +1,80 @@
+// Pictures without a graphics device: a source that paints one colour, as slowly as a test wants, and keeps account.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "server/render/picture_source.h"
+
+namespace lightwell::test {
+
+/// What the source does and has done; shared with the test, which may look and change at any time.
+struct FakeStudio {
+  std::atomic<int> render_ms = 1;
+  std::atomic<bool> failing = false;
+  std::atomic<int> views = 0;  // alive
+  std::atomic<int> pictures = 0;
+
+  std::vector<FrameRequest> requests() const {
+    std::lock_guard lock(mutex);
+    return log;
+  }
+
+  mutable std::mutex mutex;
+  std::vector<FrameRequest> log;
+};
+
+class FakeSource : public PictureSource {
+ public:
+  explicit FakeSource(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) {}
+
+  SourceFacts facts() override { return {"a fake device", "a test", "none", {"thesis"}}; }
+
+  std::unique_ptr<RenderView> make_view() override { return std::make_unique<View>(studio_); }
+
+  Result<Frame> render(const Scene&, const FrameRequest& request, RenderView& render_view) override {
+    auto& view = static_cast<View&>(render_view);
+    std::this_thread::sleep_for(std::chrono::milliseconds(studio_->render_ms));
+    if (studio_->failing) return Error{ErrorKind::kUnsupported, "scene", "the fake source was told to fail"};
+    ++studio_->pictures;
+    {
+      std::lock_guard lock(studio_->mutex);
+      studio_->log.push_back(request);
+    }
+    view.accumulated = request.accumulate ? view.accumulated + 1 : 1;
+    return paint(request, view.accumulated);
+  }
+
+ private:
+  struct View : RenderView {
+    explicit View(std::shared_ptr<FakeStudio> shared) : studio(std::move(shared)) { ++studio->views; }
+    ~View() override { --studio->views; }
+    std::shared_ptr<FakeStudio> studio;
+    std::uint32_t accumulated = 0;
+  };
+
+  Frame paint(const FrameRequest& request, std::uint32_t accumulated) const {
+    Frame frame;
+    frame.size_px = request.size_px;
+    frame.accumulated = accumulated;
+    const auto pixels = static_cast<std::size_t>(request.size_px.x) * static_cast<std::size_t>(request.size_px.y);
+    if (request.want_display) frame.display_rgbx.assign(pixels * 4, static_cast<std::uint8_t>(50 + accumulated));
+    if (request.want_linear) frame.linear_rgb.assign(pixels * 3, 0.5f);
+    frame.stages = {{"shadow maps", 0.25}, {"trace", 0.5}};
+    frame.total_ms = studio_->render_ms;
+    frame.rays = pixels;
+    return frame;
+  }
+
+  std::shared_ptr<FakeStudio> studio_;
+};
+
+inline MakePictureSource fake_source(std::shared_ptr<FakeStudio> studio) {
+  return [studio] { return std::make_unique<FakeSource>(studio); };
+}
+
+}  // namespace lightwell::test
