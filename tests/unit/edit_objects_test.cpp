@@ -251,10 +251,14 @@ TEST(Description, WhatItWritesCanBeSet) {
     const Json& lights = model["extensions"]["KHR_lights_punctual"]["lights"];
     for (std::size_t i = 0; i < lights.size(); ++i)
       all.push_back(edit("replace", kLights + std::to_string(i), lights[i]));
+    for (std::size_t i = 0; i < model["nodes"].size(); ++i)
+      for (const char* part : {"translation", "rotation", "scale", "matrix", "mesh", "children"})
+        if (model["nodes"][i].contains(part))
+          all.push_back(edit("replace", "/nodes/" + std::to_string(i) + '/' + part, model["nodes"][i][part]));
     all.push_back(edit("replace", kEnvironment, model["extensions"]["LIGHTWELL_environment"]));
     apply_or_fail(scene, all);
     Json again = describe_scene(scene);
-    again["animations"] = model["animations"];  // lights set as a whole are animated no more
+    again["animations"] = model["animations"];  // what was set is animated no more
     EXPECT_EQ(again, model);
   }
 }

@@ -40,15 +40,16 @@ void stop_all_motion(Scene& scene, std::size_t node) {
   stop_animating(scene, node, AnimatedProperty::kScale);
 }
 
-/// A quaternion that is not zero, made unit.
+/// A quaternion that is not zero, made unit. One that is unit already stays as it is to the last bit.
 Status read_rotation(const Json& value, const Range& range, const std::string& where, glm::quat& out) {
-  glm::vec4 xyzw;
-  const Status read = read_value(value, range, where, xyzw);
+  glm::vec4 given;
+  const Status read = read_value(value, range, where, given);
   if (!read) return read;
-  const float length = glm::length(xyzw);
-  if (length < 1e-6f) return invalid_input(where, "a rotation of length 0 turns nothing anywhere");
-  xyzw /= length;
-  out = glm::quat(xyzw.w, xyzw.x, xyzw.y, xyzw.z);
+  const glm::dvec4 xyzw(given);
+  const double length = glm::length(xyzw);
+  if (length < 1e-6) return invalid_input(where, "a rotation of length 0 turns nothing anywhere");
+  const glm::vec4 unit = std::abs(length - 1.0) < 1e-6 ? given : glm::vec4(xyzw / length);
+  out = glm::quat(unit.w, unit.x, unit.y, unit.z);
   return Done{};
 }
 
