@@ -22,8 +22,7 @@ const int kFinal = 0, kDirect = 1, kIndirect = 2, kAlbedo = 3, kNormal = 4, kDep
 
 vec3 direct_light(ivec2 pixel, GBufferPoint point) {
   return texelFetch(g_emission, pixel, 0).rgb +
-         reflected_punctual_light(point.brdf, point.position_ws, point.normal_ws, point.geometric_normal_ws,
-                                  point.to_camera_ws);
+         reflected_punctual_light(point.brdf, point.position_ws, point.normal_ws, point.to_camera_ws);
 }
 
 #ifdef JOINT_UPSCALE

@@ -43,7 +43,7 @@ vec3 light_of_hit(Ray ray, Hit hit) {
   if ((point.material_flags & kMaterialUnlit) != 0u) return vec3(0.0);
   const Brdf brdf = point.brdf;
   vec3 radiance = point.surface.emission + reflected_punctual_light(brdf, point.position_ws, point.surface.normal_ws,
-                                                                    point.geometric_normal_ws, -ray.direction_ws);
+                                                                    -ray.direction_ws);
 #ifdef LITERAL
   radiance *= literal_weight(ray, point, brdf);
 #endif

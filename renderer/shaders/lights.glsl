@@ -85,27 +85,28 @@ LightSample light_at(Light light, vec3 position_ws) {
 }
 
 // What one light adds to reflected_punctual_light().
-vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 geometric_normal_ws, vec3 out_ws) {
+vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
   const LightSample at = light_at(light, position_ws);
   const vec3 half_ws = normalize(out_ws + at.to_light_ws);
   const vec3 reflected = brdf_times_cosine(brdf, dot(normal_ws, out_ws), dot(normal_ws, at.to_light_ws),
                                            dot(normal_ws, half_ws), dot(out_ws, half_ws));
-  const float facing = dot(geometric_normal_ws, at.to_light_ws) > 0.0 ? 1.0 : 0.0;
-  return reflected * at.irradiance * (facing * light_visibility(light, position_ws));
+  return reflected * at.irradiance * light_visibility(light, position_ws);
 }
 
 // Radiance towards `out_ws` of punctual light reflected at a point. `normal_ws` is the shading normal on the viewer's side.
+// Smooth normals decide alone what faces a light: with the geometric normal, the terminator on coarse meshes would show
+// their triangles; what truly lies behind is in the shadow map's shadow.
 // The first two lights are read by constant indices: on a software device a variable one costs a load per invocation
 // and word, and a loop runs its body at least once. MANY_LIGHTS is for scenes with more than two.
-vec3 reflected_punctual_light(Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 geometric_normal_ws, vec3 out_ws) {
+vec3 reflected_punctual_light(Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
   vec3 radiance = vec3(0.0);
   if (light_count > 0u)
-    radiance += reflected_light(lights[0], brdf, position_ws, normal_ws, geometric_normal_ws, out_ws);
+    radiance += reflected_light(lights[0], brdf, position_ws, normal_ws, out_ws);
   if (light_count > 1u)
-    radiance += reflected_light(lights[1], brdf, position_ws, normal_ws, geometric_normal_ws, out_ws);
+    radiance += reflected_light(lights[1], brdf, position_ws, normal_ws, out_ws);
 #ifdef MANY_LIGHTS
   for (uint i = 2u; i < light_count; ++i)
-    radiance += reflected_light(lights[i], brdf, position_ws, normal_ws, geometric_normal_ws, out_ws);
+    radiance += reflected_light(lights[i], brdf, position_ws, normal_ws, out_ws);
 #endif
   return radiance;
 }
