@@ -55,38 +55,6 @@ glm::vec2 pixel_jitter(std::uint32_t frame_number) {
   return glm::vec2(glm::fract(0.5 + n * 0.7548776662466927), glm::fract(0.5 + n * 0.5698402909980532)) - 0.5f;
 }
 
-enum class WarmUpTextures { kNone, kBaseColor, kAll };
-
-// A triangle, its material with or without textures and coverage, and some lights.
-Scene warm_up_scene(WarmUpTextures textures, int lights) {
-  Primitive primitive;
-  primitive.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
-  primitive.normals.assign(3, {0, 0, 1});
-  primitive.tangents.assign(3, {1, 0, 0, 1});
-  primitive.indices = {0, 1, 2};
-  primitive.material = 0;
-  primitive.bounds_min = {-1, -1, 0};
-  primitive.bounds_max = {1, 1, 0};
-  Scene scene;
-  scene.meshes.push_back(std::make_shared<Mesh>(Mesh{"triangle", {std::move(primitive)}, {}}));
-  scene.images.push_back(std::make_shared<Image>(Image{"texel", glm::ivec2(1), {255, 255, 255, 255}}));
-  scene.textures.push_back({"texel", 0, {}});
-  scene.materials.emplace_back();
-  if (textures != WarmUpTextures::kNone) scene.materials[0].base_color_texture.texture = 0;
-  if (textures == WarmUpTextures::kAll) {
-    scene.materials[0].emissive_texture.texture = 0;
-    scene.materials[0].alpha_mode = AlphaMode::kMask;
-  }
-  scene.nodes.emplace_back().mesh = 0;
-  for (int i = 0; i < lights; ++i) {
-    scene.lights.emplace_back().kind = LightKind::kSpot;
-    scene.nodes.emplace_back().light = i;
-    scene.nodes.back().local.translation = {0, 0, 2};
-  }
-  for (int i = 0; i < static_cast<int>(scene.nodes.size()); ++i) scene.roots.push_back(i);
-  return scene;
-}
-
 std::unique_ptr<Tracer> make_tracer(const RendererOptions& options, bool software) {
   const bool native = options.tracer.empty() ? software && options.make_native_tracer : options.tracer == "embree";
   if (!options.tracer.empty() && options.tracer != "embree" && options.tracer != "compute")
@@ -157,31 +125,6 @@ gl::Context& Renderer::context() {
 
 std::string_view Renderer::tracer_name() const {
   return state_->tracer->name();
-}
-
-void Renderer::warm_up() {
-  const std::unique_ptr<RenderView> view = make_view();
-  for (const WarmUpTextures textures : {WarmUpTextures::kNone, WarmUpTextures::kBaseColor, WarmUpTextures::kAll})
-    for (const int lights : {1, 3}) {
-      const Scene scene = warm_up_scene(textures, lights);
-      for (const Estimator estimator : {Estimator::kCorrected, Estimator::kLiteral})
-        for (const ViewKind kind : {ViewKind::kFinal, ViewKind::kAlbedo}) {
-          FrameRequest request;
-          request.camera = frame_camera(pose_at(scene, 0.0), 1.0f);
-          request.size_px = glm::ivec2(16);
-          request.settings.samples = 1;
-          request.settings.indirect_size = 8;
-          request.settings.shadow_size = 64;
-          request.settings.shadow_filter = 5;
-          request.settings.bounces = 2;
-          request.settings.denoise = true;
-          request.settings.estimator = estimator;
-          request.settings.view = kind;
-          request.accumulate = true;
-          if (const Result<Frame> frame = render(scene, request, *view); !frame)
-            throw std::runtime_error("the device cannot render: " + frame.error().message());
-        }
-    }
 }
 
 std::unique_ptr<RenderView> Renderer::make_view() {

@@ -109,10 +109,6 @@ class Renderer {
 
   std::unique_ptr<RenderView> make_view();
 
-  /// Draws small pictures that need every program, so that drivers that finish compiling at a program's first use have
-  /// done so before frames flow. Takes about a second on a software device.
-  void warm_up();
-
   /// Renders. Bad settings or a scene over the device's limits are errors; the view stays usable.
   Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view);
 

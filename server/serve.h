@@ -23,13 +23,21 @@ struct ServeLimits {
   double session_idle_s = 600.0;  // a session without viewers or requests ends after this
 };
 
+/// What a session starts with unless told otherwise: two bounces, filtered; made to be looked at, not to be the thesis.
+inline Settings viewing_settings() {
+  Settings settings;
+  settings.bounces = 2;
+  settings.denoise = true;
+  return settings;
+}
+
 struct ServeOptions {
   std::string scene = "builtin:atrium";      // a path to .glb or .gltf, or builtin:NAME; what the viewer opens with
   std::string host = "127.0.0.1";            // the address to listen on
   int port = 8080;                           // 0: any free port
   std::string device;                        // as gl::DeviceChoice::request
   std::string tracer;                        // as RendererOptions::tracer
-  Settings settings;                         // what a session starts with
+  Settings settings = viewing_settings();    // what a session starts with
   int quality = 80;                          // JPEG quality while the picture moves, 1..100; a still one ends at 95
   std::string base_path;                     // "/lightwell" if a proxy forwards that prefix; empty: none
   std::vector<std::string> allowed_origins;  // pages from elsewhere that may open streams, "https://example.org"
