@@ -8,7 +8,7 @@
 #include <ostream>
 #include <random>
 
-#include "tests/unit/gltf_builder.h"
+#include "tests/unit/rich_gltf.h"
 
 namespace lightwell {
 namespace {
@@ -16,56 +16,15 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// A file with something of everything, to be broken.
-GltfBuilder rich() {
-  GltfBuilder builder = GltfBuilder::triangle();
-  json& attributes = builder.primitive()["attributes"];
-  attributes["NORMAL"] = builder.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
-  attributes["TEXCOORD_0"] = builder.add_accessor<float>({0, 1, 1, 1, 0, 0}, "VEC2");
-  attributes["COLOR_0"] = builder.add_accessor<std::uint8_t>({255, 0, 0, 0, 255, 0, 0, 0, 255}, "VEC3", true);
-  attributes["JOINTS_0"] = builder.add_accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
-  attributes["WEIGHTS_0"] = builder.add_accessor<float>({0.5f, 0.5f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
-  builder.primitive()["indices"] = builder.add_accessor<std::uint16_t>({0, 1, 2}, "SCALAR");
-  builder.primitive()["targets"] = {{{"POSITION", builder.add_accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3")}}};
-  builder.primitive()["material"] = 0;
-  builder.add("samplers", {{"minFilter", 9987}});
-  builder.add_texture();
-  builder.root["textures"][0]["sampler"] = 0;
-  builder.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
-                            {"normalTexture", {{"index", 0}}},
-                            {"extensions", {{"KHR_materials_ior", {{"ior", 1.4}}}}}});
-  builder.add("nodes", {{"translation", {0, 1, 0}}});
-  builder.add("nodes", {{"rotation", {0, 0, 0, 1}}, {"children", {1}}});
-  const std::vector<float> identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  std::vector<float> matrices = identity;
-  matrices.insert(matrices.end(), identity.begin(), identity.end());
-  builder.add("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", builder.add_accessor<float>(matrices, "MAT4")}});
-  builder.root["nodes"][0]["skin"] = 0;
-  builder.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}}}});
-  builder.root["nodes"][1]["camera"] = 0;
-  builder.root["extensionsUsed"] = {"KHR_lights_punctual", "EXT_mesh_gpu_instancing"};
-  builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", json::object()}}};
-  builder.root["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-  const int instances = builder.add_accessor<float>({0, 0, 0, 1, 1, 1}, "VEC3");
-  builder.add("nodes", {{"mesh", 0}});
-  builder.root["nodes"][3]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = instances;
-  builder.root["scenes"] = {{{"nodes", {0, 2, 3}}}};
-  builder.root["scene"] = 0;
-  builder.add("animations",
-              {{"samplers", {{{"input", builder.add_accessor<float>({0, 1}, "SCALAR")}, {"output", instances}}}},
-               {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
-  return builder;
-}
-
 TEST(GltfMalformed, TheFileToBreakIsWhole) {
-  const Result<Scene> scene = rich().load();
+  const Result<Scene> scene = rich_gltf().load();
   ASSERT_TRUE(scene.ok()) << scene.error().message();
   EXPECT_THAT(scene->warnings, testing::IsEmpty());
 }
 
 struct Break {
   std::string name;
-  std::function<void(json&)> apply;  // to the document of rich()
+  std::function<void(json&)> apply;  // to the document of rich_gltf()
   std::string where;                 // the error's
   std::string what;                  // part of it
   ErrorKind kind = ErrorKind::kInvalidInput;
@@ -78,7 +37,7 @@ void PrintTo(const Break& broken, std::ostream* out) {
 class GltfBroken : public testing::TestWithParam<Break> {};
 
 TEST_P(GltfBroken, IsRefusedByName) {
-  GltfBuilder builder = rich();
+  GltfBuilder builder = rich_gltf();
   GetParam().apply(builder.root);
   const Result<Scene> scene = builder.load();
   ASSERT_FALSE(scene.ok());
@@ -322,7 +281,7 @@ TEST(GltfMalformed, AnIndexOutOfRange) {
 }
 
 TEST(GltfMalformed, ABrokenImage) {
-  GltfBuilder builder = rich();
+  GltfBuilder builder = rich_gltf();
   const json& view = builder.root["bufferViews"][builder.root["images"][0]["bufferView"].get<std::size_t>()];
   builder.binary[view["byteOffset"].get<std::size_t>() + 45] ^= std::byte{0xff};
   const Error error = error_of(builder.glb());
@@ -331,7 +290,7 @@ TEST(GltfMalformed, ABrokenImage) {
 }
 
 TEST(GltfMalformed, LimitsHold) {
-  const ByteVector glb = rich().glb();
+  const ByteVector glb = rich_gltf().glb();
   const auto where_over = [&](auto set) {
     LoadLimits limits;
     set(limits);
@@ -397,13 +356,13 @@ TEST(GltfMalformed, HostileNamesAreShownShortAndPlain) {
 }
 
 TEST(GltfMalformed, EveryTruncationIsAnError) {
-  const ByteVector glb = rich().glb();
+  const ByteVector glb = rich_gltf().glb();
   for (std::size_t length = 0; length < glb.size(); ++length)
     EXPECT_FALSE(load_glb(std::span(glb).first(length)).ok()) << length << " of " << glb.size() << " bytes";
 }
 
 TEST(GltfMalformed, EveryTruncationWithAHeaderThatAgreesIsAnError) {
-  const ByteVector glb = rich().glb();
+  const ByteVector glb = rich_gltf().glb();
   for (std::size_t length = 12; length < glb.size(); ++length) {
     ByteVector part(glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(length));
     for (std::size_t i = 0; i < 4; ++i) part[8 + i] = static_cast<std::byte>(length >> 8 * i & 0xff);
@@ -412,8 +371,8 @@ TEST(GltfMalformed, EveryTruncationWithAHeaderThatAgreesIsAnError) {
 }
 
 TEST(GltfMalformed, RandomDamageIsSurvived) {
-  const ByteVector whole = rich().glb();
-  const std::size_t json_size = rich().root.dump().size();
+  const ByteVector whole = rich_gltf().glb();
+  const std::size_t json_size = rich_gltf().root.dump().size();
   std::mt19937 random(4711);
   const auto below = [&random](std::size_t bound) { return random() % bound; };
   int refused = 0;
