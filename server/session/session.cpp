@@ -78,7 +78,7 @@ protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream() {
   const auto most = static_cast<std::size_t>(surroundings_.rules.limits.max_viewers_per_session);
   if (!audience_.join(viewer, most))
     return make_problem(503, "the session has " + std::to_string(most) + " viewers, as many as it may have");
-  if (ended_) viewer->end(protocol::CloseCode::kSessionEnded, "the session was ended", false);
+  if (ended_) viewer->end(protocol::CloseCode::kSessionEnded, "the session was ended", true);
   return viewer;
 }
 

@@ -32,7 +32,7 @@ bool SessionStore::end(const std::string& id) {
     ended = std::move(found->second);
     sessions_.erase(found);
   }
-  ended->end(protocol::CloseCode::kSessionEnded, "the session was ended", false);
+  ended->end(protocol::CloseCode::kSessionEnded, "the session was ended", true);
   return true;
 }
 
@@ -48,7 +48,7 @@ void SessionStore::keep_house(SteadyTime now) {
       it = is_idle ? sessions_.erase(it) : std::next(it);
     }
   }
-  for (const auto& session : idle) session->end(protocol::CloseCode::kSessionEnded, "nobody watched for long", false);
+  for (const auto& session : idle) session->end(protocol::CloseCode::kSessionEnded, "nobody watched for long", true);
   for (const auto& session : alive) session->audience().check_patience(now);
 }
 

@@ -48,7 +48,7 @@ export class Fixture {
   }
 
   async seq() {
-    return Number((await this.viewer.stage()).seq);
+    return Number((await this.viewer.stage()).seq ?? 0);  // none before the first answered input
   }
 
   /** The panel's control with this label. */

@@ -300,7 +300,7 @@ TEST_F(StreamTest, EndsStreamsWithTheirSession) {
   client.hello();
   EXPECT_EQ(ask("DELETE", "/v1/sessions/" + session).status, 204);
   const json bye = client.next_text("bye");
-  EXPECT_EQ(bye["reconnect"], false);
+  EXPECT_EQ(bye["reconnect"], true);
   EXPECT_EQ(client.close_code(), 4001);
   for (int i = 0; i < 100 && studio_->views > 0; ++i) std::this_thread::sleep_for(10ms);
   EXPECT_EQ(studio_->views, 0);
