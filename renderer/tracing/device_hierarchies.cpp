@@ -136,7 +136,7 @@ const DeviceHierarchies::BottomLevel& DeviceHierarchies::bottom_level(const Geom
 
 void DeviceHierarchies::build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances) {
   for (std::uint32_t i = 0; i < group.key.primitives.size(); ++i)
-    level.primitives.push_back(instances[group.instances[i]].primitive);
+    level.primitives.push_back(instances[group.first_instance + i].primitive);
   const std::vector<Box> boxes = boxes_of(triangles_of(group));
   Bvh bvh = build_bvh(boxes, kBottomLimits, &threads_);
   level.nodes = nodes_.allocate(static_cast<std::uint32_t>(bvh.nodes.size()));
@@ -200,20 +200,14 @@ void DeviceHierarchies::build_top_level(const std::vector<GeometryGroup>& groups
   }
   top_root_ = moved(top.root, top_range_.first(), 0);
 
-  // Records of the groups, and after them the instances of each.
-  std::vector<std::uint32_t> instances;
-  const auto first_word = static_cast<std::uint32_t>(groups.size() * sizeof(DeviceGroup) / sizeof(std::uint32_t));
   std::vector<DeviceGroup> records;
   for (const std::uint32_t item : top.items) {
-    const GeometryGroup& group = groups[item];
-    const glm::mat4 rows = glm::transpose(glm::inverse(group.world_from_object));
-    const auto first_instance = first_word + static_cast<std::uint32_t>(instances.size());
-    records.push_back({{rows[0], rows[1], rows[2]}, levels[item]->root, first_instance, group.key.filtered ? 1u : 0u});
-    instances.insert(instances.end(), group.instances.begin(), group.instances.end());
+    const glm::mat4 rows = glm::transpose(glm::inverse(groups[item].world_from_object));
+    records.push_back({{rows[0], rows[1], rows[2]},
+                       levels[item]->root,
+                       groups[item].first_instance,
+                       groups[item].key.filtered ? 1u : 0u});
   }
-  const std::size_t record_count = records.size(), instances_bytes = instances.size() * sizeof(std::uint32_t);
-  records.resize(record_count + (instances_bytes + sizeof(DeviceGroup) - 1) / sizeof(DeviceGroup));
-  std::memcpy(static_cast<void*>(&records[record_count]), instances.data(), instances_bytes);
   upload_if_changed(group_buffer_, groups_, std::move(records));
 }
 

@@ -16,12 +16,12 @@
 
 namespace lightwell {
 
-/// std430, 64 bytes; `group_words` in trace.comp. The instances of all groups follow the records in the same buffer.
+/// std430, 64 bytes; `group_words` in trace.comp.
 struct DeviceGroup {
-  glm::vec4 object_from_world[3];    // rows
-  std::uint32_t root = 0;            // BvhChild in the node buffer
-  std::uint32_t first_instance = 0;  // where the group's instances start, in 32-bit words of the buffer
-  std::uint32_t needs_coverage = 0;
+  glm::vec4 object_from_world[3];  // rows
+  std::uint32_t root;              // BvhChild in the node buffer
+  std::uint32_t first_instance;
+  std::uint32_t needs_coverage;
   std::uint32_t padding = 0;
 };
 static_assert(sizeof(DeviceGroup) == 64);

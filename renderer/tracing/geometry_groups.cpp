@@ -1,10 +1,6 @@
 #include "renderer/tracing/geometry_groups.h"
 
 #include <cmath>
-#include <cstring>
-#include <functional>
-#include <string_view>
-#include <unordered_map>
 
 #include "renderer/check.h"
 
@@ -40,7 +36,7 @@ GeometryGroup group_of(const Instance& instance, std::uint32_t index, bool filte
   GeometryGroup group;
   group.key.primitives = {instance.primitive.get()};
   group.key.filtered = filtered;
-  group.instances = {index};
+  group.first_instance = index;
   if (is_invertible(instance.world_from_object)) {
     group.world_from_object = instance.world_from_object;
     group.deformed = instance.deformed;
@@ -55,41 +51,25 @@ GeometryGroup group_of(const Instance& instance, std::uint32_t index, bool filte
   return group;
 }
 
-// What instances of one group have in common.
-struct Place {
-  glm::mat4 world_from_object;
-  bool filtered;
-  bool operator==(const Place& other) const {
-    return filtered == other.filtered &&
-           std::memcmp(&world_from_object, &other.world_from_object, sizeof world_from_object) == 0;
-  }
-};
-
-struct PlaceHash {
-  std::size_t operator()(const Place& place) const {
-    const std::string_view bytes(reinterpret_cast<const char*>(&place.world_from_object), sizeof(glm::mat4));
-    return std::hash<std::string_view>()(bytes) ^ static_cast<std::size_t>(place.filtered);
-  }
-};
+bool joins(const Instance& instance, std::uint32_t index, bool filtered, const GeometryGroup& group,
+           const Instance& first) {
+  return !instance.deformed && !group.deformed && instance.node == first.node && instance.node >= 0 &&
+         group.first_instance + group.key.primitives.size() == index && group.key.filtered == filtered &&
+         instance.world_from_object == group.world_from_object;
+}
 
 }  // namespace
 
 std::vector<GeometryGroup> group_instances(std::span<const Instance> instances, const std::vector<bool>& filtered) {
   std::vector<GeometryGroup> groups;
-  std::unordered_map<Place, std::size_t, PlaceHash> places;  // of rigid groups
   groups.reserve(instances.size());
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     const Instance& instance = instances[i];
     if (instance.primitive->indices.size() < 3 || !is_finite(instance.world_from_object)) continue;
-    const Place place{instance.world_from_object, filtered[i]};
-    const auto known = instance.deformed ? places.end() : places.find(place);
-    if (known != places.end()) {
-      groups[known->second].key.primitives.push_back(instance.primitive.get());
-      groups[known->second].instances.push_back(i);
-      continue;
-    }
-    groups.push_back(group_of(instance, i, filtered[i]));
-    if (!groups.back().deformed) places.emplace(place, groups.size() - 1);
+    if (!groups.empty() && joins(instance, i, filtered[i], groups.back(), instances[groups.back().first_instance]))
+      groups.back().key.primitives.push_back(instance.primitive.get());
+    else
+      groups.push_back(group_of(instance, i, filtered[i]));
   }
   return groups;
 }

@@ -1,6 +1,5 @@
-// Which bottom-level hierarchies a frame needs. Instances under the very same matrix (the primitives of one node, all
-// that was exported in world space) share one: one well-sorted hierarchy is walked faster than many whose boxes
-// overlap. The groups are a function of the pose alone, so that equal requests give equal bytes.
+// Which bottom-level hierarchies a frame needs. Instances that can never move against each other (the primitives of one
+// node) share one, so that a mesh of many overlapping primitives is one well-sorted hierarchy and not many mixed ones.
 #pragma once
 
 #include <compare>
@@ -21,17 +20,17 @@ struct GeometryKey {
   auto operator<=>(const GeometryKey&) const = default;
 };
 
-/// Instances under one matrix. `instances[i]` shows `key.primitives[i]`.
+/// Consecutive instances under one matrix. Instance `first_instance + i` shows `key.primitives[i]`.
 struct GeometryGroup {
   GeometryKey key;
-  std::vector<std::uint32_t> instances;              // ascending
+  std::uint32_t first_instance = 0;
   glm::mat4 world_from_object{1.0f};                 // finite and invertible
   std::shared_ptr<const DeformedVertices> deformed;  // not null: a group of one; another address is another shape
 };
 
-/// Groups the instances, in the order of each group's first. `filtered[i]`: hits of instance i need a coverage test.
-/// Instances without a triangle or with a matrix that is not finite are left out. One that is flattened by its matrix
-/// becomes a deformed one in world space, since it has no inverse to take rays into its own space.
+/// Groups the instances in their order. `filtered[i]`: hits of instance i need a coverage test. Instances without a
+/// triangle or with a matrix that is not finite are left out. One that is flattened by its matrix becomes a deformed
+/// one in world space, since it has no inverse to take rays into its own space.
 std::vector<GeometryGroup> group_instances(std::span<const Instance> instances, const std::vector<bool>& filtered);
 
 }  // namespace lightwell

@@ -18,7 +18,7 @@ layout(std430, binding = TRACE_BINDING_RESULTS) writeonly buffer Hits { Hit hits
 #endif
 layout(std430, binding = TRACE_BINDING_NODES) readonly buffer Nodes { uvec4 node_words[]; };              // BvhNode
 layout(std430, binding = TRACE_BINDING_TRIANGLES) readonly buffer Triangles { uvec4 triangle_words[]; };  // DeviceTriangle
-layout(std430, binding = TRACE_BINDING_GROUPS) readonly buffer Groups { uvec4 group_words[]; };           // DeviceGroup, then instances
+layout(std430, binding = TRACE_BINDING_GROUPS) readonly buffer Groups { uvec4 group_words[]; };           // DeviceGroup
 
 uniform uint ray_count;
 uniform uint top_root;  // a BvhChild, or kDone if there is nothing to hit
@@ -26,9 +26,6 @@ uniform uint top_root;  // a BvhChild, or kDone if there is nothing to hit
 // BvhChild, and two marks that no leaf looks like.
 const uint kLeafBit = 0x80000000u, kCountShift = 27u, kFirstMask = 0x07ffffffu;
 const uint kDone = 0xffffffffu, kLeaveGroup = 0xfffffffeu;
-
-// The instance that stands at a 32-bit word of the groups' buffer.
-uint instance_at(uint word) { return group_words[word >> 2u][word & 3u]; }
 
 // Where the ray is followed: in the world, or in the space of the group it has entered.
 struct LocalRay {
@@ -56,7 +53,6 @@ vec2 box_interval(LocalRay ray, vec3 box_min, vec3 box_max, float t_min, float t
 }
 
 // Tests the `count` triangles of a leaf and keeps the nearest hit. Any hit ends the search if ANY_HIT.
-// hit.instance is the word at which the instance stands.
 void test_leaf(LocalRay ray, uint first, uint count, uvec4 group, float t_min, inout Hit hit) {
   for (uint i = first; i < first + count; ++i) {
     const uvec4 a = triangle_words[3u * i];
@@ -67,10 +63,11 @@ void test_leaf(LocalRay ray, uint first, uint count, uvec4 group, float t_min, i
     if (!hits_triangle(ray.origin, ray.direction, t_min, hit.t, uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz),
                        uintBitsToFloat(c.xyz), t, uv))
       continue;
+    const uint instance = group.y + b.w;
 #if COVERAGE
-    if (group.z != 0u && !is_covered(instance_at(group.y + b.w), a.w, uv)) continue;
+    if (group.z != 0u && !is_covered(instance, a.w, uv)) continue;
 #endif
-    hit = Hit(t, group.y + b.w, a.w, uv.x, uv.y);
+    hit = Hit(t, instance, a.w, uv.x, uv.y);
 #if ANY_HIT
     return;
 #endif
@@ -143,9 +140,6 @@ void main() {
     if (ray.t_max >= ray.t_min) {
       hit = trace(ray);
       is_hit = hit.t < ray.t_max;
-#if !ANY_HIT
-      if (is_hit) hit.instance = instance_at(hit.instance);
-#endif
     }
   }
 #if ANY_HIT

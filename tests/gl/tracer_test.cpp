@@ -150,7 +150,6 @@ TraceWorld instanced_world() {
     m = glm::rotate(m, angle, glm::normalize(glm::vec3(1.0f, angle, 0.3f)));
     m = glm::scale(m, glm::vec3(i % 2 == 0 ? 0.3f : -0.2f, 0.25f + 0.02f * angle, 0.1f));
     world.add(mesh, m);
-    if (i % 3 == 0) world.add(random_triangles(20, 2.0f, 60 + static_cast<std::uint32_t>(i)));  // these share a matrix
   }
   return world;
 }

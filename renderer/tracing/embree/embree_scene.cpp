@@ -139,7 +139,7 @@ void EmbreeScene::build(BottomLevel& level, const GeometryGroup& group, std::spa
   level.primitives.clear();
   for (std::uint32_t i = 0; i < group.key.primitives.size(); ++i) {
     const Primitive& primitive = *group.key.primitives[i];
-    level.primitives.push_back(instances[group.instances[i]].primitive);
+    level.primitives.push_back(instances[group.first_instance + i].primitive);
     const EmbreeGeometry geometry = make_triangles(device_.get(), primitive, group.deformed.get(), group.key.filtered);
     rtcAttachGeometryByID(level.scene.get(), geometry.get(), i);
   }
@@ -169,10 +169,8 @@ void EmbreeScene::rebuild_top_level(const std::vector<GeometryGroup>& groups,
     rtcDetachGeometry(top_level_.get(), static_cast<unsigned>(i));
   slots_.resize(groups.size());
   first_instances_.clear();
-  instances_.clear();
   for (std::uint32_t i = 0; i < groups.size(); ++i) {
-    first_instances_.push_back(static_cast<std::uint32_t>(instances_.size()));
-    instances_.insert(instances_.end(), groups[i].instances.begin(), groups[i].instances.end());
+    first_instances_.push_back(groups[i].first_instance);
     changed |= show(slots_[i], i, *levels[i], groups[i].world_from_object);
   }
   if (!changed) return;

@@ -26,7 +26,7 @@ class EmbreeScene {
 
   /// The instance in Pose::instances behind Embree's two numbers.
   std::uint32_t instance_of(std::uint32_t top_level_id, std::uint32_t geometry_id) const {
-    return instances_[first_instances_[top_level_id] + geometry_id];
+    return first_instances_[top_level_id] + geometry_id;
   }
 
   /// Whether the triangle counts at these barycentrics.
@@ -74,8 +74,7 @@ class EmbreeScene {
   std::uint64_t frame_ = 0;
 
   AlphaRanges alpha_ranges_;
-  std::vector<std::uint32_t> instances_;        // of all slots, one slot after the other
-  std::vector<std::uint32_t> first_instances_;  // by slot: where its instances start in `instances_`
+  std::vector<std::uint32_t> first_instances_;  // by slot
   std::vector<CoverageTest> coverage_;          // by instance, as are the following
   std::vector<const Primitive*> primitives_;
   std::vector<std::shared_ptr<const Image>> images_;  // keep CoverageTest::image alive
