@@ -22,6 +22,8 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
+constexpr std::size_t kReadBytes = 64 << 10;  // taken at once of a message
+
 constexpr auto kHandshakeTimeout = std::chrono::seconds(10);  // of the opening and of the closing one
 
 /// What was understood, written anew. The subprotocol is chosen already.
@@ -81,7 +83,7 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
     stream_.set_option(websocket::stream_base::decorator([this](websocket::response_type& response) {
       if (!admission_.subprotocol.empty()) response.set(http::field::sec_websocket_protocol, admission_.subprotocol);
     }));
-    stream_.read_message_max(static_cast<std::size_t>(admission_.max_message_bytes));
+    stream_.read_message_max(0);   // read_messages keeps the limit
     stream_.auto_fragment(false);  // a picture is one frame: nobody speaks in between
     const auto request = handshake_request(head);
     error_code error;
@@ -93,8 +95,17 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
     beast::flat_buffer buffer;
     for (;;) {
       error_code error;
-      co_await stream_.async_read(buffer, asio::redirect_error(asio::use_awaitable, error));
-      if (error) co_return;  // closed, broken, too large or silent: Beast has told the peer which
+      // Not async_read with a limit: that would reset the connection while the rest of the message arrives, and the
+      // reason with it. Closing here reads on until the peer has answered.
+      do {
+        co_await stream_.async_read_some(buffer, kReadBytes, asio::redirect_error(asio::use_awaitable, error));
+        if (error) co_return;  // closed, broken or silent: Beast has told the peer which
+        if (buffer.size() > admission_.max_message_bytes) {
+          co_await stream_.async_close(websocket::close_code::too_big,
+                                       asio::redirect_error(asio::use_awaitable, error));
+          co_return;
+        }
+      } while (!stream_.is_message_done());
       const auto data = buffer.data();
       const std::string_view bytes(static_cast<const char*>(data.data()), data.size());
       if (stream_.got_text())
