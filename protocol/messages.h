@@ -61,6 +61,7 @@ struct SettingsSpec {
   std::optional<std::int32_t> shadow_size;           // pixels, 1 or more
   std::optional<std::int32_t> shadow_filter;         // pixels, 1 or more
   std::optional<bool> denoise;
+  std::optional<bool> multiple_scattering;
 
   bool operator==(const SettingsSpec&) const = default;
 };

@@ -195,6 +195,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "shadow_size", settings.shadow_size);
   give(object, "shadow_filter", settings.shadow_filter);
   give(object, "denoise", settings.denoise);
+  give(object, "multiple_scattering", settings.multiple_scattering);
   return object;
 }
 

@@ -6,6 +6,7 @@
 #include "renderer/check.h"
 #include "renderer/methods/thesis.h"
 #include "renderer/passes/bindings.glsl"
+#include "renderer/passes/brdf_table.h"
 #include "renderer/passes/camera_block.h"
 #include "renderer/tracing/tracer.h"
 
@@ -88,6 +89,7 @@ struct Renderer::State {
   DeviceScene device_scene;
   gl::Buffer camera;
   EnvironmentBlock environment;
+  BrdfTable brdf_table{shaders};
 };
 
 void Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px) {
@@ -96,6 +98,7 @@ void Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request
   camera.bind_uniform(BINDING_CAMERA);
   environment.set(scene.environment, request.settings.background);
   environment.bind();
+  brdf_table.bind();
   device_scene.bind();
 }
 
@@ -140,7 +143,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
   try {
     state_->timer.begin_frame();
     const Pose pose = pose_at(scene, request.time_s);
-    state_->device_scene.prepare(scene, pose);
+    state_->device_scene.prepare(scene, pose, request.settings.multiple_scattering);
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
     state_->tracer->update({pose.instances, coverage});
     view.accumulated = request.accumulate ? view.accumulated : 0;

@@ -49,6 +49,7 @@ struct Settings {
   int shadow_size = 512;                // a shadow map's side in pixels, 64..4096
   int shadow_filter = 3;                // its box filter's width in pixels, odd, 1..15
   bool denoise = false;                 // edge-stopping filter over the indirect map (not in the thesis)
+  bool multiple_scattering = false;     // light between microfacets is kept: rough surfaces lose no energy
 };
 
 /// The first setting out of range, by its name on the command line; Done if all are good.

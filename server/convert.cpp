@@ -32,6 +32,7 @@ class SettingsReader {
     read_value(spec.shadow_size, settings_.shadow_size);
     read_value(spec.shadow_filter, settings_.shadow_filter);
     read_value(spec.denoise, settings_.denoise);
+    read_value(spec.multiple_scattering, settings_.multiple_scattering);
     if (spec.exposure_ev) {
       settings_.exposure_ev.reset();
       if (*spec.exposure_ev) settings_.exposure_ev = static_cast<float>(**spec.exposure_ev);
@@ -117,6 +118,7 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.shadow_size = settings.shadow_size;
   spec.shadow_filter = settings.shadow_filter;
   spec.denoise = settings.denoise;
+  spec.multiple_scattering = settings.multiple_scattering;
   return spec;
 }
 

@@ -126,7 +126,10 @@ export class Panel {
     const denoise = this.setting("denoise", make_toggle, {
       label: "Denoise", hint: "Smooths the indirect map without crossing edges",
     });
-    return [method.row, samples.row, indirect_size.row, bounces.row, denoise.row];
+    const multiple_scattering = this.setting("multiple_scattering", make_toggle, {
+      label: "Multiple scattering", hint: "Keeps the light that bounces between the microfacets of rough surfaces",
+    });
+    return [method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row];
   }
 
   advanced_rows() {

@@ -203,7 +203,7 @@ const settings = object({}, {
   method: token, samples: at_least_one, bounces: index, indirect_size: at_least_one, estimator: token, view: token,
   exposure_ev: nullable(number(-64, 64)), tone_map: token, seed: u32,
   background: nullable(array(number(0), 3, 3)), shadow_size: at_least_one, shadow_filter: at_least_one,
-  denoise: boolean,
+  denoise: boolean, multiple_scattering: boolean,
 });
 
 const edit = (value, pointer) => {

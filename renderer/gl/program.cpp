@@ -133,12 +133,17 @@ std::string ShaderLibrary::source_of(std::string_view path) const {
 }
 
 ProgramPtr ShaderLibrary::compute(std::string_view path, const std::vector<std::string>& defines) {
-  const std::string label(path);
+  const ProgramPtr known = programs_[key_of(std::string(path), defines)];
+  return known ? known : compute_text(std::string(path), source_of(path), defines);
+}
+
+ProgramPtr ShaderLibrary::compute_text(const std::string& label, const std::string& text,
+                                       const std::vector<std::string>& defines) {
   ProgramPtr& program = programs_[key_of(label, defines)];
   if (program) return program;
   Expansion source;
   expand(
-      label, [this](const std::string& file) { return source_of(file); }, source);
+      label, [&](const std::string& file) { return file == label ? text : source_of(file); }, source);
   program = std::make_shared<Program>(label, link(label, {compile(GL_COMPUTE_SHADER, source, defines)}));
   return program;
 }

@@ -68,6 +68,9 @@ class ShaderLibrary {
 
   /// Defines are "NAME VALUE". Throw std::runtime_error with the compiler's log, its lines named by file.
   ProgramPtr compute(std::string_view path, const std::vector<std::string>& defines = {});
+  /// A compute program of the given text, which may include the library's sources; `label` names it in the log.
+  ProgramPtr compute_text(const std::string& label, const std::string& text,
+                          const std::vector<std::string>& defines = {});
   ProgramPtr raster(std::string_view vertex_path, std::string_view fragment_path,
                     const std::vector<std::string>& defines = {});
 

@@ -100,7 +100,7 @@ const Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& 
   if (traced_ != nullptr && traced_->first == first) return *traced_;
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
   const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
-  traced_ = &directions_pass_.run(g_buffer, grid, first, std::min(batch, samples - first), seed);
+  traced_ = &directions_pass_.run(frame.scene, g_buffer, grid, first, std::min(batch, samples - first), seed);
   frame.timer.mark("directions");
   frame.tracer.closest_hit(traced_->rays, traced_->ray_count, occlusion_.hits);
   frame.rays += traced_->ray_count;

@@ -59,11 +59,19 @@ ComposePass::ComposePass(gl::ShaderLibrary& shaders)
       general_(program_with(shaders, {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
       plain_joint_(program_with(shaders, {"JOINT_UPSCALE 1"})),
       general_joint_(program_with(shaders, {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1", "JOINT_UPSCALE 1"})),
-      auxiliary_(program_with(shaders, {"AUXILIARY_VIEWS 1"})) {}
+      auxiliary_(program_with(shaders, {"AUXILIARY_VIEWS 1"})),
+      special_([&shaders](const std::vector<std::string>& defines) {
+        return program_with(shaders, with_defines({"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"}, defines));
+      }),
+      special_joint_([&shaders](const std::vector<std::string>& defines) {
+        return program_with(shaders,
+                            with_defines({"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1", "JOINT_UPSCALE 1"}, defines));
+      }) {}
 
 ComposePass::Variant& ComposePass::variant_for(const DeviceScene& scene, const Settings& settings) {
   const ViewKind view = settings.view;
   if (view != ViewKind::kFinal && view != ViewKind::kDirect && view != ViewKind::kIndirect) return auxiliary_;
+  if (!scene.brdf_variant().plain()) return (settings.denoise ? special_joint_ : special_).at(scene.brdf_variant());
   const bool general = scene.has_environment_image() || scene.has_many_lights();
   if (settings.denoise) return general ? general_joint_ : plain_joint_;
   return general ? general_ : plain_;

@@ -50,6 +50,7 @@ class ComposePass {
   };
   Variant& variant_for(const DeviceScene& scene, const Settings& settings);
   Variant plain_, general_, plain_joint_, general_joint_, auxiliary_;
+  BrdfVariants<Variant> special_, special_joint_;
   Picture picture_;
   gl::Framebuffer framebuffer_;
   gl::EmptyVertexArray full_screen_;

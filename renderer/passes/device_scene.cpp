@@ -93,12 +93,13 @@ DeviceScene::~DeviceScene() {
   glDeleteVertexArrays(1, &vertex_array_);
 }
 
-void DeviceScene::prepare(const Scene& scene, const Pose& pose) {
+void DeviceScene::prepare(const Scene& scene, const Pose& pose, bool multiple_scattering) {
   use_geometry(pose);
   use_textures(scene);
   upload_materials(scene);
   upload_instances(scene, pose);
   has_many_lights_ = pose.lights.size() > 2;
+  brdf_variant_.multiscatter = multiple_scattering;
   attach_buffers();
   set_vertex_array();
 }

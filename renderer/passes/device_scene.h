@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "renderer/gl/buffer.h"
+#include "renderer/passes/brdf_variant.h"
 #include "renderer/passes/scene_textures.h"
 #include "renderer/scene/pose.h"
 
@@ -51,7 +52,8 @@ class DeviceScene {
 
   /// Uploads what changed since the last frame; scenes used lately are kept, so that sessions can alternate.
   /// Throws std::runtime_error when the scene is over the device's limits.
-  void prepare(const Scene& scene, const Pose& pose);
+  /// `multiple_scattering` is the setting of that name.
+  void prepare(const Scene& scene, const Pose& pose, bool multiple_scattering);
 
   /// Binds everything that shaders/scene_data.glsl and textures.glsl declare.
   void bind() const;
@@ -64,6 +66,7 @@ class DeviceScene {
   bool has_coverage() const { return has_coverage_; }
   bool has_environment_image() const { return has_environment_image_; }
   bool has_many_lights() const { return has_many_lights_; }
+  BrdfVariant brdf_variant() const { return brdf_variant_; }
   std::uint64_t triangles() const { return triangles_; }
 
   /// Draws all instances in three groups; `begin_group` sets the state of each before it is drawn.
@@ -97,6 +100,7 @@ class DeviceScene {
   Draws draws_[3];
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false;
   bool has_environment_image_ = false, has_many_lights_ = false;
+  BrdfVariant brdf_variant_;
   std::uint64_t triangles_ = 0;
 };
 

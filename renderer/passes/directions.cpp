@@ -12,9 +12,10 @@ DirectionsPass::DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       points_seed_(points_program_, "seed"),
       points_("sample points", 0),
       point_texels_("sample points", GL_RGBA32F),
-      program_(shaders.compute("passes/directions.comp")),
-      grid_(program_),
-      count_(program_, "direction_count") {
+      plain_(shaders.compute("passes/directions.comp")),
+      special_([&shaders](const std::vector<std::string>& defines) {
+        return shaders.compute("passes/directions.comp", defines);
+      }) {
   directions_.rays = gl::Buffer("rays", 0, buffers);
   directions_.weights = gl::Buffer("direction weights", 0);
 }
@@ -38,8 +39,8 @@ void DirectionsPass::resize(std::uint32_t most_rays) {
   directions_.weight_texels.attach(directions_.weights);
 }
 
-const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, std::uint32_t first,
-                                      std::uint32_t count, std::uint32_t seed) {
+const Directions& DirectionsPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                                      std::uint32_t first, std::uint32_t count, std::uint32_t seed) {
   directions_.first = first;
   directions_.count = count;
   directions_.ray_count = grid.slots() * count;
@@ -48,10 +49,11 @@ const Directions& DirectionsPass::run(const GBuffer& g_buffer, const IndirectMap
   point_texels_.bind(UNIT_SAMPLE_POINTS);
   directions_.rays.bind_storage(BINDING_RAYS);
   directions_.weights.bind_storage(BINDING_WEIGHTS);
-  grid_.set(grid);
-  count_ = count;
+  Variant& variant = scene.brdf_variant().plain() ? plain_ : special_.at(scene.brdf_variant());
+  variant.grid.set(grid);
+  variant.count = count;
   constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp
-  program_->dispatch(grid.slots() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
+  variant.program->dispatch(grid.slots() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return directions_;
 }

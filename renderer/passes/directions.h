@@ -3,6 +3,7 @@
 
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
+#include "renderer/passes/device_scene.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/indirect_map_grid.h"
 
@@ -25,19 +26,24 @@ class DirectionsPass {
   /// `buffers`: host-visible where a native tracer reads the rays.
   DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
   void resize(std::uint32_t most_rays);
-  const Directions& run(const GBuffer& g_buffer, const IndirectMapGrid& grid, std::uint32_t first, std::uint32_t count,
-                        std::uint32_t seed);
+  const Directions& run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                        std::uint32_t first, std::uint32_t count, std::uint32_t seed);
 
  private:
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p) : program(p), grid(p), count(p, "direction_count") {}
+    gl::ProgramPtr program;
+    IndirectMapUniforms grid;
+    gl::Uniform<std::uint32_t> count;
+  };
   void make_sample_points(std::uint32_t first, std::uint32_t count, std::uint32_t seed);
 
   gl::ProgramPtr points_program_;
   gl::Uniform<std::uint32_t> points_first_, points_count_, points_seed_;
   gl::Buffer points_;
   gl::BufferTexture point_texels_;
-  gl::ProgramPtr program_;
-  IndirectMapUniforms grid_;
-  gl::Uniform<std::uint32_t> count_;
+  Variant plain_;
+  BrdfVariants<Variant> special_;
   Directions directions_;
 };
 

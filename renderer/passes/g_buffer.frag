@@ -36,14 +36,15 @@ void main() {
   at.uv0 = vec2(0.0);
   at.uv1 = vec2(0.0);
   at.color = vec4(1.0);
-  float footprint = 0.0;
+  vec2 footprint = vec2(0.0);
 #ifdef HAS_TEXTURES
   at.tangent_ws = world_tangent.xyz;
   at.handedness = world_tangent.w;
   at.uv0 = texture_uv.xy;
   at.uv1 = texture_uv.zw;
   at.color = vertex_color_factor;
-  footprint = max(length(dFdx(texture_uv.xy)), length(dFdy(texture_uv.xy)));
+  const vec4 across = dFdx(texture_uv), down = dFdy(texture_uv);
+  footprint = vec2(max(length(across.xy), length(down.xy)), max(length(across.zw), length(down.zw)));
 #endif
   Surface surface = shade_surface(material, at, footprint);
   if ((material.flags & kMaterialAlphaMask) != 0u && surface.base_color.a < material.alpha_cutoff) discard;
@@ -55,7 +56,7 @@ void main() {
   if (dot(geometric_normal, to_camera) < 0.0) geometric_normal = -geometric_normal;
   // A double-sided surface seen from behind shows its normal turned around; so does one whose winding disagrees.
   if (dot(at.normal_ws, geometric_normal) < 0.0) surface.normal_ws = -surface.normal_ws;
-  surface.normal_ws = visible_shading_normal(surface.normal_ws, to_camera);
+  surface.normal_ws = visible_shading_normal(surface.normal_ws, geometric_normal, to_camera);
 
   const bool unlit = (material.flags & kMaterialUnlit) != 0u;
   const vec3 base_color = unlit ? vec3(0.0) : clamp(surface.base_color.rgb, 0.0, 1.0);

@@ -4,14 +4,26 @@
 
 namespace lightwell {
 
+namespace {
+
+const std::vector<std::string> kGeneral = {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1",
+                                           "MANY_LIGHTS 1"};
+const std::vector<std::string> kLiteral = {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "MANY_LIGHTS 1", "LITERAL 1"};
+
+}  // namespace
+
 HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.compute("passes/hit_light.comp")),
       many_lights_(shaders.compute("passes/hit_light.comp", {"MANY_LIGHTS 1"})),
       base_color_textures_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1"})),
-      general_(shaders.compute("passes/hit_light.comp",
-                               {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
-      literal_(
-          shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "MANY_LIGHTS 1", "LITERAL 1"})),
+      general_(shaders.compute("passes/hit_light.comp", kGeneral)),
+      literal_(shaders.compute("passes/hit_light.comp", kLiteral)),
+      special_([&shaders](const std::vector<std::string>& defines) {
+        return shaders.compute("passes/hit_light.comp", with_defines(kGeneral, defines));
+      }),
+      special_literal_([&shaders](const std::vector<std::string>& defines) {
+        return shaders.compute("passes/hit_light.comp", with_defines(kLiteral, defines));
+      }),
       screen_program_(shaders.compute("passes/screen_light.comp")),
       screen_ray_count_(screen_program_, "ray_count") {
   radiance_.radiance = gl::Buffer("hit radiance", 0);
@@ -29,6 +41,7 @@ void HitLightPass::bind(const Directions& directions, const OcclusionMap& occlus
 }
 
 HitLightPass::Variant& HitLightPass::variant_for(const DeviceScene& scene, bool literal) {
+  if (!scene.brdf_variant().plain()) return (literal ? special_literal_ : special_).at(scene.brdf_variant());
   if (literal) return literal_;
   if (scene.has_all_textures() || scene.has_environment_image()) return general_;
   if (scene.has_textures()) return scene.has_many_lights() ? general_ : base_color_textures_;

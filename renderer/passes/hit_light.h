@@ -45,6 +45,7 @@ class HitLightPass {
   void bind(const Directions& directions, const OcclusionMap& occlusion) const;
   Variant& variant_for(const DeviceScene& scene, bool literal);
   Variant plain_, many_lights_, base_color_textures_, general_, literal_;
+  BrdfVariants<Variant> special_, special_literal_;
   gl::ProgramPtr screen_program_;
   gl::Uniform<std::uint32_t> screen_ray_count_;
   HitRadiance radiance_;

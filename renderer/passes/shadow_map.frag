@@ -21,7 +21,7 @@ void main() {
   if ((material.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u) {
     float alpha = material.base_color.a;
     if (material.base_color_texture.slot != 0u)
-      alpha *= sample_color_texture(material.base_color_texture, texture_uv.xy, texture_uv.zw, 0.0).a;
+      alpha *= sample_color_texture(material.base_color_texture, texture_uv.xy, texture_uv.zw, vec2(0.0)).a;
     const bool masked = (material.flags & kMaterialAlphaMask) != 0u;
     const float threshold =
         masked ? material.alpha_cutoff : unit_interval(hash(uvec3(gl_FragCoord.xy, 0x51u))) + 1e-6;

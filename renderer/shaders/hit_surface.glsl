@@ -38,12 +38,12 @@ HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
 #endif
 
   HitPoint point;
-  point.surface = shade_surface(material, at, footprint_uv);
+  point.surface = shade_surface(material, at, vec2(footprint_uv));
   point.position_ws = ray.origin_ws + hit.t * ray.direction_ws;
   const bool behind = dot(outward, ray.direction_ws) > 0.0;
   point.geometric_normal_ws = behind ? -outward : outward;
   if (behind) point.surface.normal_ws = -point.surface.normal_ws;
-  point.surface.normal_ws = visible_shading_normal(point.surface.normal_ws, -ray.direction_ws);
+  point.surface.normal_ws = visible_shading_normal(point.surface.normal_ws, point.geometric_normal_ws, -ray.direction_ws);
   point.brdf = make_brdf(clamp(point.surface.base_color.rgb, 0.0, 1.0), clamp(point.surface.metallic, 0.0, 1.0),
                          point.surface.roughness, material.f0_dielectric, material.specular_factor);
   point.material_flags = material.flags;

@@ -87,9 +87,7 @@ LightSample light_at(Light light, vec3 position_ws) {
 // What one light adds to reflected_punctual_light().
 vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
   const LightSample at = light_at(light, position_ws);
-  const vec3 half_ws = normalize(out_ws + at.to_light_ws);
-  const vec3 reflected = brdf_times_cosine(brdf, dot(normal_ws, out_ws), dot(normal_ws, at.to_light_ws),
-                                           dot(normal_ws, half_ws), dot(out_ws, half_ws));
+  const vec3 reflected = brdf_times_cosine(brdf, normal_ws, out_ws, at.to_light_ws);
   return reflected * at.irradiance * light_visibility(light, position_ws);
 }
 

@@ -18,8 +18,8 @@ struct Surface {
   vec3 normal_ws;       // unit, normal map applied, not yet turned towards the viewer
 };
 
-// `footprint` in units of uv: how wide an area the lookups should average.
-Surface shade_surface(Material material, Attributes at, float footprint) {
+// `footprint` in units of each set of uv: how wide an area the lookups should average.
+Surface shade_surface(Material material, Attributes at, vec2 footprint) {
   Surface surface;
   surface.base_color = material.base_color * at.color;
   surface.metallic = material.metallic;
@@ -52,11 +52,13 @@ Surface shade_surface(Material material, Attributes at, float footprint) {
   return surface;
 }
 
-// A normal the viewer can see: one that a normal map or interpolation turned away is bent back to the horizon, so that
-// no pixel goes black at grazing angles.
-vec3 visible_shading_normal(vec3 normal_ws, vec3 to_viewer_ws) {
+// The shading normal bent as little as it takes for its mirror direction to leave the surface, so that neither a normal
+// map nor interpolation makes a pixel black at grazing angles: Keller et al. 2017, "The Iray light transport simulation
+// and rendering system". `geometric_normal_ws` is unit and on the viewer's side; the result is as well.
+vec3 visible_shading_normal(vec3 normal_ws, vec3 geometric_normal_ws, vec3 to_viewer_ws) {
   const float kLeastCosine = 0.01;
-  const float cosine = dot(normal_ws, to_viewer_ws);
+  const vec3 mirrored = reflect(-to_viewer_ws, normal_ws);
+  const float cosine = dot(mirrored, geometric_normal_ws);
   if (cosine >= kLeastCosine) return normal_ws;
-  return normalize(normal_ws + (kLeastCosine - cosine) * to_viewer_ws);
+  return normalize(to_viewer_ws + normalize(mirrored + (kLeastCosine - cosine) * geometric_normal_ws));
 }

@@ -7,8 +7,9 @@ layout(binding = UNIT_TEXTURES_LINEAR) uniform sampler2DArray linear_textures[TE
 
 const float kTextureClassSize[TEXTURE_CLASSES] = float[](128.0, 512.0, 1024.0, 2048.0);
 
-float wrap_coordinate(float x, uint mode, float size) {
-  const float half_texel = 0.5 / size;
+// `half_texel` is that of the coarser of the levels to be filtered: the arrays repeat, and nothing but its own edge may
+// reach a lookup that is clamped.
+float wrap_coordinate(float x, uint mode, float half_texel) {
   const float mirrored = 1.0 - abs(mod(x, 2.0) - 1.0);
   const float clamped = clamp(mode == 1u ? mirrored : x, half_texel, 1.0 - half_texel);
   return mode == 0u ? x : clamped;
@@ -20,17 +21,20 @@ struct TextureLookup {
   float lod;
 };
 
-// `footprint` is the width of the area to filter, in units of uv.
-TextureLookup texture_lookup(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+// `footprint` is the width of the area to filter, in units of each set of uv.
+TextureLookup texture_lookup(TextureUse use, vec2 uv0, vec2 uv1, vec2 footprint) {
   const uint slot = use.slot;
   TextureLookup lookup;
   lookup.array = slot & 7u;
   const float size = kTextureClassSize[lookup.array & 3u];
   const mat2 uv_matrix = mat2(use.uv_transform.xy, use.uv_transform.zw);
-  vec2 uv = uv_matrix * ((slot & 0x200000u) != 0u ? uv1 : uv0) + use.uv_offset;
+  const bool second_set = (slot & 0x200000u) != 0u;
+  vec2 uv = uv_matrix * (second_set ? uv1 : uv0) + use.uv_offset;
   const float scale = max(length(uv_matrix[0]), length(uv_matrix[1]));
-  lookup.lod = (slot & 0x100000u) != 0u ? log2(max(footprint * scale * size, 1e-6)) : 0.0;
-  uv = vec2(wrap_coordinate(uv.x, (slot >> 14) & 3u, size), wrap_coordinate(uv.y, (slot >> 16) & 3u, size));
+  const float width = (second_set ? footprint.y : footprint.x) * scale * size;
+  lookup.lod = (slot & 0x100000u) != 0u ? log2(max(width, 1e-6)) : 0.0;
+  const float half_texel = min(0.5 / size * exp2(ceil(max(lookup.lod, 0.0))), 0.5);
+  uv = vec2(wrap_coordinate(uv.x, (slot >> 14) & 3u, half_texel), wrap_coordinate(uv.y, (slot >> 16) & 3u, half_texel));
   const bool nearest = lookup.lod <= 0.0 ? (slot & 0x40000u) != 0u : (slot & 0x80000u) != 0u;
   if (nearest) uv = (floor(uv * size) + 0.5) / size;
   lookup.position = vec3(uv, float((slot >> 3) & 0x7ffu));
@@ -38,7 +42,7 @@ TextureLookup texture_lookup(TextureUse use, vec2 uv0, vec2 uv1, float footprint
 }
 
 // Colours, decoded from sRGB before filtering.
-vec4 sample_color_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+vec4 sample_color_texture(TextureUse use, vec2 uv0, vec2 uv1, vec2 footprint) {
   const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
   switch (lookup.array & 3u) {
     case 0u: return textureLod(srgb_textures[0], lookup.position, lookup.lod);
@@ -49,7 +53,7 @@ vec4 sample_color_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
 }
 
 // Data, as it is stored.
-vec4 sample_data_texture(TextureUse use, vec2 uv0, vec2 uv1, float footprint) {
+vec4 sample_data_texture(TextureUse use, vec2 uv0, vec2 uv1, vec2 footprint) {
   const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
   switch (lookup.array & 3u) {
     case 0u: return textureLod(linear_textures[0], lookup.position, lookup.lod);

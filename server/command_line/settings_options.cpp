@@ -39,6 +39,8 @@ void add_transport_options(CLI::App& app, Settings& settings) {
   add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
              "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));
   app.add_flag("--denoise,!--no-denoise", settings.denoise, "Smooth the indirect light within surfaces");
+  app.add_flag("--multiple-scattering,!--no-multiple-scattering", settings.multiple_scattering,
+               "Keep the light that bounces between the microfacets of rough surfaces");
   add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
               "Start of the random sequence: the same seed gives the same picture");
 }
