@@ -1,5 +1,7 @@
 #include "renderer/gl/program.h"
 
+#include "renderer/gl/buffer.h"
+
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -111,6 +113,12 @@ void Program::dispatch(std::uint32_t size, std::uint32_t group) const {
   const std::uint32_t groups = (size + group - 1) / group;
   const std::uint32_t rows = (groups + kMostGroups - 1) / kMostGroups;
   if (groups > 0) glDispatchCompute((groups + rows - 1) / rows, rows, 1);
+}
+
+void Program::dispatch_indirect(const Buffer& arguments) const {
+  use();
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments.id());
+  glDispatchComputeIndirect(0);
 }
 
 ShaderLibrary::ShaderLibrary() {

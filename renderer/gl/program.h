@@ -13,6 +13,8 @@
 
 namespace lightwell::gl {
 
+class Buffer;
+
 /// A linked program. Move-only; made by ShaderLibrary.
 class Program {
  public:
@@ -28,6 +30,8 @@ class Program {
   /// Dispatches a compute program over at least `size` invocations in groups of `group`, as the shader declares them.
   void dispatch(glm::ivec2 size, glm::ivec2 group = {8, 8}) const;
   void dispatch(std::uint32_t size, std::uint32_t group = 64) const;
+  /// Dispatches as many groups as the first three words of `arguments` say.
+  void dispatch_indirect(const Buffer& arguments) const;
 
  private:
   std::string label_;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kMostRays = 1u << 20;
 
 std::uint32_t directions_per_batch(const IndirectMapGrid& grid, int samples) {
-  return std::clamp(kMostRays / grid.slots(), 1u, static_cast<std::uint32_t>(samples));
+  return std::clamp(kMostRays / grid.most_slots(), 1u, static_cast<std::uint32_t>(samples));
 }
 
 // The van der Corput and Halton points: where in its block the representative pixel lies in the n-th frame.
@@ -33,14 +33,14 @@ IndirectMapGrid make_grid(const FrameContext& frame) {
 ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : g_buffer_pass_(shaders),
       shadow_maps_pass_(shaders),
+      active_blocks_pass_(shaders),
       directions_pass_(shaders, buffers),
       hit_light_pass_(shaders),
       gather_pass_(shaders),
       filter_pass_(shaders),
       add_maps_pass_(shaders),
-      compose_pass_(shaders) {
-  occlusion_.hits = gl::Buffer("hits", 0, buffers);
-}
+      compose_pass_(shaders),
+      occlusion_(buffers) {}
 
 const Picture& ThesisMethod::render(FrameContext& frame) {
   const IndirectMapGrid grid = make_grid(frame);
@@ -60,12 +60,11 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   g_buffer_pass_.resize(frame.size_px);
   shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
                            ShadowMapsPass::layers_for(frame.pose));
-  compose_pass_.resize(frame.size_px);
-  const std::uint32_t most_rays = grid.slots() * directions_per_batch(grid, frame.settings.samples);
+  compose_pass_.resize(g_buffer_pass_.g_buffer().depth);
+  const std::uint32_t most_rays = grid.most_slots() * directions_per_batch(grid, frame.settings.samples);
+  active_blocks_pass_.resize(grid);
   directions_pass_.resize(most_rays);
-  hit_light_pass_.resize(most_rays);
-  occlusion_.hits.reserve(std::uint64_t{most_rays} * sizeof(Hit));
-  occlusion_.hit_texels.attach(occlusion_.hits);
+  occlusion_.resize(most_rays);
   gather_pass_.resize(grid.map_size_px);
   filter_pass_.resize(grid.map_size_px);
   if (all_bounces_.image && all_bounces_.image.size_px() == grid.map_size_px) return;
@@ -81,6 +80,7 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
     return all_bounces_;
   }
   traced_ = nullptr;
+  active_blocks_ = &active_blocks_pass_.run(g_buffer, grid);
   for (int bounce = 1; bounce <= frame.settings.bounces; ++bounce) {
     gather_bounce(frame, g_buffer, shadows, grid, bounce);
     if (frame.settings.denoise) {
@@ -95,14 +95,15 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
 }
 
 // The directions [first, first + batch) and their hits. A single batch is made and traced once for all bounces.
-const Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                                            std::uint32_t first, std::uint32_t batch) {
+Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                                      std::uint32_t first, std::uint32_t batch) {
   if (traced_ != nullptr && traced_->first == first) return *traced_;
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
   const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
-  traced_ = &directions_pass_.run(frame.scene, g_buffer, grid, first, std::min(batch, samples - first), seed);
+  traced_ = &directions_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, first, std::min(batch, samples - first),
+                                  seed);
   frame.timer.mark("directions");
-  frame.tracer.closest_hit(traced_->rays, traced_->ray_count, occlusion_.hits);
+  frame.tracer.closest_hit(traced_->rays, traced_->ray_count, occlusion_.hits, &occlusion_.list);
   frame.rays += traced_->ray_count;
   frame.timer.mark("trace");
   return *traced_;
@@ -114,12 +115,14 @@ void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, c
   const std::uint32_t batch = directions_per_batch(grid, frame.settings.samples);
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
   for (std::uint32_t first = 0; first < samples; first += batch) {
-    const Directions& directions = trace_batch(frame, g_buffer, grid, first, batch);
-    const HitRadiance& radiance =
-        bounce == 1 ? hit_light_pass_.run(frame.scene, directions, occlusion_, shadows, literal)
-                    : hit_light_pass_.run_from_screen(g_buffer, directions, occlusion_, previous_bounce_.image);
+    Directions& directions = trace_batch(frame, g_buffer, grid, first, batch);
+    if (bounce == 1)
+      hit_light_pass_.run(frame.scene, occlusion_, shadows, literal, directions);
+    else
+      hit_light_pass_.run_from_screen(g_buffer, occlusion_, previous_bounce_.image, literal, directions);
     frame.timer.mark(bounce == 1 ? "light of hits" : "light from screen");
-    gather_pass_.run(g_buffer, grid, directions, occlusion_, radiance, samples, literal, bounce_);
+    gather_pass_.run(g_buffer, grid, *active_blocks_, directions, occlusion_,
+                     {samples, literal, bounce == 1 && !literal}, bounce_);
     frame.timer.mark("gather");
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/methods/frame_context.h"
+#include "renderer/passes/active_blocks.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/directions.h"
 #include "renderer/passes/g_buffer.h"
@@ -23,13 +24,14 @@ class ThesisMethod {
   void resize(const FrameContext& frame, const IndirectMapGrid& grid);
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);
-  const Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                                std::uint32_t first, std::uint32_t batch);
+  Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                          std::uint32_t first, std::uint32_t batch);
   void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMapGrid& grid, int bounce);
 
   GBufferPass g_buffer_pass_;
   ShadowMapsPass shadow_maps_pass_;
+  ActiveBlocksPass active_blocks_pass_;
   DirectionsPass directions_pass_;
   HitLightPass hit_light_pass_;
   GatherPass gather_pass_;
@@ -38,7 +40,8 @@ class ThesisMethod {
   ComposePass compose_pass_;
   OcclusionMap occlusion_;
   IndirectMap bounce_, previous_bounce_, all_bounces_;
-  const Directions* traced_ = nullptr;  // the batch whose hits are in occlusion_; null: none of this frame
+  const ActiveBlocks* active_blocks_ = nullptr;  // of this frame
+  Directions* traced_ = nullptr;                 // the batch whose hits are in occlusion_; null: none of this frame
 };
 
 }  // namespace lightwell

@@ -17,8 +17,8 @@ struct DeviceEnvironment {
   glm::vec4 background;
 };
 
-gl::ProgramPtr program_with(gl::ShaderLibrary& shaders, const std::vector<std::string>& defines) {
-  return shaders.raster("passes/full_screen.vert", "passes/compose.frag", defines);
+bool is_of_light(ViewKind view) {
+  return view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
 }
 
 struct DeviceExposure {
@@ -55,32 +55,18 @@ void EnvironmentBlock::bind() const {
 }
 
 ComposePass::ComposePass(gl::ShaderLibrary& shaders)
-    : plain_(program_with(shaders, {})),
-      general_(program_with(shaders, {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"})),
-      plain_joint_(program_with(shaders, {"JOINT_UPSCALE 1"})),
-      general_joint_(program_with(shaders, {"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1", "JOINT_UPSCALE 1"})),
-      auxiliary_(program_with(shaders, {"AUXILIARY_VIEWS 1"})),
-      special_([&shaders](const std::vector<std::string>& defines) {
-        return program_with(shaders, with_defines({"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1"}, defines));
+    : surfaces_([&shaders](const gl::Defines& defines) {
+        return shaders.raster("passes/full_screen.vert", "passes/compose.frag", defines);
       }),
-      special_joint_([&shaders](const std::vector<std::string>& defines) {
-        return program_with(shaders,
-                            with_defines({"HAS_ENVIRONMENT_IMAGE 1", "MANY_LIGHTS 1", "JOINT_UPSCALE 1"}, defines));
+      background_([&shaders](const gl::Defines& defines) {
+        return shaders.raster("passes/full_screen.vert", "passes/background.frag", defines);
       }) {}
 
-ComposePass::Variant& ComposePass::variant_for(const DeviceScene& scene, const Settings& settings) {
-  const ViewKind view = settings.view;
-  if (view != ViewKind::kFinal && view != ViewKind::kDirect && view != ViewKind::kIndirect) return auxiliary_;
-  if (!scene.brdf_variant().plain()) return (settings.denoise ? special_joint_ : special_).at(scene.brdf_variant());
-  const bool general = scene.has_environment_image() || scene.has_many_lights();
-  if (settings.denoise) return general ? general_joint_ : plain_joint_;
-  return general ? general_ : plain_;
-}
-
-void ComposePass::resize(glm::ivec2 size_px) {
-  if (picture_.image && picture_.image.size_px() == size_px) return;
-  picture_ = {gl::Texture("picture", GL_RGBA32F, size_px), 0};
-  framebuffer_ = gl::Framebuffer("picture", {&picture_.image}, nullptr);
+void ComposePass::resize(const gl::Texture& depth) {
+  if (picture_.image && picture_.image.size_px() == depth.size_px() && depth_id_ == depth.id()) return;
+  picture_ = {gl::Texture("picture", GL_RGBA32F, depth.size_px()), 0};
+  framebuffer_ = gl::Framebuffer("picture", {&picture_.image}, &depth);
+  depth_id_ = depth.id();
 }
 
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
@@ -92,19 +78,41 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   indirect.image.bind(UNIT_IMAGE_B);
   gathered.occlusion_distance().bind(UNIT_IMAGE_C);
   gathered.guide().bind(UNIT_GUIDE);
-  Variant& variant = variant_for(scene, settings);
-  variant.view = static_cast<int>(settings.view);
-  variant.program->use();
   framebuffer_.bind();
   if (picture_.accumulated > 0) {
     glEnable(GL_BLEND);
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
     glBlendColor(0.0f, 0.0f, 0.0f, 1.0f / static_cast<float>(picture_.accumulated + 1));
   }
-  full_screen_.draw_full_screen();
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);  // the G-buffer's depth is read by the shaders, too
+  draw_surfaces(scene, settings);
+  draw_background(scene, settings);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   ++picture_.accumulated;
   return picture_;
+}
+
+// The triangle lies at infinity, at depth 0: surfaces are where something nearer is stored.
+void ComposePass::draw_surfaces(const DeviceScene& scene, const Settings& settings) {
+  gl::Defines defines = is_of_light(settings.view) ? gl::joined(scene.light_defines(), scene.brdf_defines())
+                                                   : gl::Defines{"AUXILIARY_VIEWS 1"};
+  if (settings.denoise && is_of_light(settings.view)) defines.emplace_back("JOINT_UPSCALE 1");
+  Variant& variant = surfaces_.with(defines);
+  variant.view = static_cast<int>(settings.view);
+  variant.program->use();
+  glDepthFunc(GL_LESS);
+  full_screen_.draw_full_screen();
+}
+
+void ComposePass::draw_background(const DeviceScene& scene, const Settings& settings) {
+  Background& background = background_.with(scene.environment_defines());
+  background.shown = settings.view == ViewKind::kFinal || settings.view == ViewKind::kDirect ? 1 : 0;
+  background.program->use();
+  glDepthFunc(GL_EQUAL);
+  full_screen_.draw_full_screen();
 }
 
 DisplayPass::DisplayPass(gl::ShaderLibrary& shaders)

@@ -1,6 +1,6 @@
-// One scene-referred picture: emission and direct light through the variance shadow maps (thesis 4.1), and the indirect
+// The surfaces of the scene-referred picture: emission and direct light through the variance shadow maps (thesis 4.1), and the indirect
 // map scaled up bilinearly (thesis 5.3) and multiplied with the directional albedo it was divided by; or one of the
-// views. Blending averages with earlier frames.
+// views. Blending averages with earlier frames; the depth test leaves the background to background.frag.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
@@ -8,10 +8,8 @@
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/lights.glsl"
-#include "shaders/environment.glsl"
 
-// a: 1 + luminance of all light on lit surfaces, so that every view is exposed alike; 0 on the background, -1 on unlit
-// surfaces.
+// a: 1 + luminance of all light on lit surfaces, so that every view is exposed alike; -1 on unlit surfaces.
 layout(location = 0) out vec4 picture;
 layout(binding = UNIT_IMAGE_B) uniform sampler2D indirect_map;
 layout(binding = UNIT_IMAGE_C) uniform sampler2D occlusion_distance;
@@ -71,18 +69,12 @@ vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   }
   return vec4(value, 1.0 + luminance(value));
 }
-
-vec3 background(vec2 position_px) { return vec3(0.0); }
 #else
 vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   const vec3 direct = direct_light(pixel, point);
   const vec3 indirect = indirect_light(point, uv);
   const vec3 shown = direct * (view == kIndirect ? 0.0 : 1.0) + indirect * (view == kDirect ? 0.0 : 1.0);
   return vec4(shown, 1.0 + luminance(direct + indirect));
-}
-
-vec3 background(vec2 position_px) {
-  return view == kIndirect ? vec3(0.0) : background_radiance(normalize(camera_ray_ws(position_px)));
 }
 #endif
 
@@ -92,5 +84,5 @@ void main() {
   // Unlit surfaces show their colour as it is, whatever the exposure.
   const bool unlit = texelFetch(g_emission, pixel, 0).a > 0.5;
   const vec4 surface = surface_value(pixel, point, gl_FragCoord.xy / vec2(camera.size_px.xy));
-  picture = point.valid ? vec4(surface.rgb, unlit ? -1.0 : surface.a) : vec4(background(gl_FragCoord.xy), 0.0);
+  picture = vec4(surface.rgb, unlit ? -1.0 : surface.a);
 }

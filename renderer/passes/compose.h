@@ -6,6 +6,7 @@
 
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
+#include "renderer/gl/variants.h"
 #include "renderer/passes/gather.h"
 #include "renderer/renderer.h"
 
@@ -34,7 +35,8 @@ class EnvironmentBlock {
 class ComposePass {
  public:
   explicit ComposePass(gl::ShaderLibrary& shaders);
-  void resize(glm::ivec2 size_px);
+  /// `depth`: the G-buffer's, which tells surfaces from background.
+  void resize(const gl::Texture& depth);
   /// The view and the way of scaling up are the settings'; `gathered` holds what the indirect map was made with.
   /// `accumulate`: average with the frames already in the picture.
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
@@ -48,11 +50,18 @@ class ComposePass {
     gl::ProgramPtr program;
     gl::Uniform<int> view;
   };
-  Variant& variant_for(const DeviceScene& scene, const Settings& settings);
-  Variant plain_, general_, plain_joint_, general_joint_, auxiliary_;
-  BrdfVariants<Variant> special_, special_joint_;
+  void draw_surfaces(const DeviceScene& scene, const Settings& settings);
+  void draw_background(const DeviceScene& scene, const Settings& settings);
+  gl::Variants<Variant> surfaces_;
+  struct Background {
+    explicit Background(const gl::ProgramPtr& p) : program(p), shown(p, "shown") {}
+    gl::ProgramPtr program;
+    gl::Uniform<int> shown;
+  };
+  gl::Variants<Background> background_;
   Picture picture_;
   gl::Framebuffer framebuffer_;
+  GLuint depth_id_ = 0;
   gl::EmptyVertexArray full_screen_;
 };
 

@@ -98,10 +98,25 @@ void DeviceScene::prepare(const Scene& scene, const Pose& pose, bool multiple_sc
   use_textures(scene);
   upload_materials(scene);
   upload_instances(scene, pose);
-  has_many_lights_ = pose.lights.size() > 2;
-  brdf_variant_.multiscatter = multiple_scattering;
+  set_defines(scene, pose, multiple_scattering);
   attach_buffers();
   set_vertex_array();
+}
+
+void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multiple_scattering) {
+  const bool points = std::any_of(pose.lights.begin(), pose.lights.end(),
+                                  [](const PlacedLight& placed) { return placed.light.kind == LightKind::kPoint; });
+  texture_defines_.clear();
+  if (has_textures_ || has_all_textures_) texture_defines_.emplace_back("HAS_TEXTURES 1");
+  if (has_all_textures_) texture_defines_.emplace_back("ALL_TEXTURES 1");
+  light_defines_ = {pose.lights.size() > 2    ? "MANY_LIGHTS 1"
+                    : pose.lights.size() == 2 ? "TWO_LIGHTS 1"
+                                              : "ONE_LIGHT 1"};
+  if (points) light_defines_.emplace_back("POINT_LIGHTS 1");
+  brdf_defines_.clear();
+  if (multiple_scattering) brdf_defines_.emplace_back("MULTISCATTER 1");
+  environment_defines_.clear();
+  if (scene.environment.image) environment_defines_.emplace_back("HAS_ENVIRONMENT_IMAGE 1");
 }
 
 void DeviceScene::attach_buffers() {
@@ -144,7 +159,6 @@ void DeviceScene::upload_materials(const Scene& scene) {
   packed.push_back(pack_material(Material{}, textures));  // the default material of glTF, last
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
-  has_environment_image_ = scene.environment.image != nullptr;
   has_textures_ = has_all_textures_ = has_coverage_ = false;
   for (const DeviceMaterial& material : packed) {
     has_textures_ |= material.base_color_texture.slot != 0;

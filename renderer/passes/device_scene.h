@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/gl/buffer.h"
-#include "renderer/passes/brdf_variant.h"
+#include "renderer/gl/variants.h"
 #include "renderer/passes/scene_textures.h"
 #include "renderer/scene/pose.h"
 
@@ -58,15 +58,15 @@ class DeviceScene {
   /// Binds everything that shaders/scene_data.glsl and textures.glsl declare.
   void bind() const;
 
-  /// What the shaders of this scene must be able to do; a software device pays for all that they could.
-  /// Textures: of base colours, and vertex colours. All textures: of anything else. Coverage: alpha masks or blends.
-  /// Many lights: more than two.
-  bool has_textures() const { return has_textures_ || has_all_textures_; }
-  bool has_all_textures() const { return has_all_textures_; }
+  /// What the shaders of this scene must be able to do, as defines. Textures: HAS_TEXTURES for base colours and vertex
+  /// colours, ALL_TEXTURES as well for anything else. Lights: see shaders/lights.glsl.
+  const gl::Defines& texture_defines() const { return texture_defines_; }
+  const gl::Defines& light_defines() const { return light_defines_; }
+  /// MULTISCATTER, and HAS_LOBES where a material has clearcoat, sheen, transmission or a specular colour.
+  const gl::Defines& brdf_defines() const { return brdf_defines_; }
+  const gl::Defines& environment_defines() const { return environment_defines_; }
+  /// Alpha masks or blends.
   bool has_coverage() const { return has_coverage_; }
-  bool has_environment_image() const { return has_environment_image_; }
-  bool has_many_lights() const { return has_many_lights_; }
-  BrdfVariant brdf_variant() const { return brdf_variant_; }
   std::uint64_t triangles() const { return triangles_; }
 
   /// Draws all instances in three groups; `begin_group` sets the state of each before it is drawn.
@@ -88,6 +88,7 @@ class DeviceScene {
   void use_textures(const Scene& scene);
   void upload_instances(const Scene& scene, const Pose& pose);
   void upload_materials(const Scene& scene);
+  void set_defines(const Scene& scene, const Pose& pose, bool multiple_scattering);
   void attach_buffers();
   void set_vertex_array();
   void draw_group(DrawGroup group) const;
@@ -99,8 +100,7 @@ class DeviceScene {
   GLuint vertex_array_ = 0;
   Draws draws_[3];
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false;
-  bool has_environment_image_ = false, has_many_lights_ = false;
-  BrdfVariant brdf_variant_;
+  gl::Defines texture_defines_, light_defines_, brdf_defines_, environment_defines_;
   std::uint64_t triangles_ = 0;
 };
 

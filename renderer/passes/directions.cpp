@@ -12,12 +12,10 @@ DirectionsPass::DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       points_seed_(points_program_, "seed"),
       points_("sample points", 0),
       point_texels_("sample points", GL_RGBA32F),
-      plain_(shaders.compute("passes/directions.comp")),
-      special_([&shaders](const std::vector<std::string>& defines) {
-        return shaders.compute("passes/directions.comp", defines);
-      }) {
+      variants_([&shaders](const gl::Defines& defines) { return shaders.compute("passes/directions.comp", defines); }) {
   directions_.rays = gl::Buffer("rays", 0, buffers);
   directions_.weights = gl::Buffer("direction weights", 0);
+  directions_.arriving = gl::Buffer("arriving light", 0);
 }
 
 // The table of random numbers that all tiles of the indirect map share.
@@ -35,25 +33,30 @@ void DirectionsPass::make_sample_points(std::uint32_t first, std::uint32_t count
 void DirectionsPass::resize(std::uint32_t most_rays) {
   directions_.rays.reserve(std::uint64_t{most_rays} * sizeof(Ray));
   directions_.ray_texels.attach(directions_.rays);
-  directions_.weights.reserve(std::uint64_t{most_rays} * 8);
+  directions_.weights.reserve(std::uint64_t{most_rays} * sizeof(glm::vec4));
   directions_.weight_texels.attach(directions_.weights);
+  directions_.arriving.reserve(std::uint64_t{most_rays} * sizeof(glm::vec4));
+  directions_.arriving_texels.attach(directions_.arriving);
 }
 
-const Directions& DirectionsPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                                      std::uint32_t first, std::uint32_t count, std::uint32_t seed) {
+Directions& DirectionsPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                                const ActiveBlocks& blocks, std::uint32_t first, std::uint32_t count,
+                                std::uint32_t seed) {
   directions_.first = first;
   directions_.count = count;
-  directions_.ray_count = grid.slots() * count;
+  directions_.ray_count = blocks.slots() * count;
   make_sample_points(first, count, seed);
   g_buffer.bind();
   point_texels_.bind(UNIT_SAMPLE_POINTS);
   directions_.rays.bind_storage(BINDING_RAYS);
   directions_.weights.bind_storage(BINDING_WEIGHTS);
-  Variant& variant = scene.brdf_variant().plain() ? plain_ : special_.at(scene.brdf_variant());
-  variant.grid.set(grid);
+  blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
+  directions_.arriving.bind_storage(BINDING_ARRIVING);
+  Variant& variant = variants_.with(gl::joined(scene.environment_defines(), scene.brdf_defines()));
+  variant.grid.set(grid, blocks.slots());
   variant.count = count;
   constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp
-  variant.program->dispatch(grid.slots() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
+  variant.program->dispatch(blocks.slots() * ((count + kDirectionsPerInvocation - 1) / kDirectionsPerInvocation));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   return directions_;
 }

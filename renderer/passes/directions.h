@@ -3,19 +3,24 @@
 
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
-#include "renderer/passes/device_scene.h"
+#include "renderer/gl/variants.h"
+#include "renderer/passes/active_blocks.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/indirect_map_grid.h"
 
 namespace lightwell {
 
 /// A batch of directions for every pixel of the indirect map, as rays from its representative's surface.
-/// Ray j * slots + slot is direction first + j of the pixel in that slot (shaders/indirect_map.glsl).
+/// Ray j * slots + slot (slots: of the active blocks) is direction first + j of the pixel in that slot
+/// (shaders/indirect_map.glsl).
 struct Directions {
   gl::Buffer rays;                                   // Ray
   gl::BufferTexture ray_texels{"rays", GL_RGBA32F};  // the same, 2 texels a ray
-  gl::Buffer weights;                                // 4 halves: f cos(theta) / pdf, and 1 where there is a ray
-  gl::BufferTexture weight_texels{"direction weights", GL_RG32UI};
+  gl::Buffer weights;                                // vec4: f cos(theta) / pdf
+  gl::BufferTexture weight_texels{"direction weights", GL_RGBA32F};
+  gl::Buffer
+      arriving;  // vec4, light times weight and its distance: the environment's (kNoHit) until a hit's takes its place
+  gl::BufferTexture arriving_texels{"arriving light", GL_RGBA32F};
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t ray_count = 0;
@@ -26,24 +31,23 @@ class DirectionsPass {
   /// `buffers`: host-visible where a native tracer reads the rays.
   DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
   void resize(std::uint32_t most_rays);
-  const Directions& run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                        std::uint32_t first, std::uint32_t count, std::uint32_t seed);
+  Directions& run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                  const ActiveBlocks& blocks, std::uint32_t first, std::uint32_t count, std::uint32_t seed);
 
  private:
-  struct Variant {
-    explicit Variant(const gl::ProgramPtr& p) : program(p), grid(p), count(p, "direction_count") {}
-    gl::ProgramPtr program;
-    IndirectMapUniforms grid;
-    gl::Uniform<std::uint32_t> count;
-  };
   void make_sample_points(std::uint32_t first, std::uint32_t count, std::uint32_t seed);
 
   gl::ProgramPtr points_program_;
   gl::Uniform<std::uint32_t> points_first_, points_count_, points_seed_;
   gl::Buffer points_;
   gl::BufferTexture point_texels_;
-  Variant plain_;
-  BrdfVariants<Variant> special_;
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p) : program(p), grid(p), count(p, "direction_count") {}
+    gl::ProgramPtr program;
+    IndirectMapUniforms grid;
+    gl::Uniform<std::uint32_t> count;
+  };
+  gl::Variants<Variant> variants_;
   Directions directions_;
 };
 

@@ -16,7 +16,7 @@ uniform float smoothing;   // share of the way to the new value in this frame; 1
 const int kBins = 256;
 const float kDarkestEv = -24.0, kBrightestEv = 24.0;
 const float kMedianTarget = 0.22;   // where the median lands before the tone curve: a little over middle grey
-const int kGrid = 128;              // samples along the longer side, at most
+const int kGrid = 64;               // samples along the longer side, at most
 
 shared uint bins[kBins];
 

@@ -12,10 +12,9 @@ void GBuffer::bind() const {
 }
 
 GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
-    : plain_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag")),
-      base_color_textures_(shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", {"HAS_TEXTURES 1"})),
-      all_textures_(
-          shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", {"HAS_TEXTURES 1", "ALL_TEXTURES 1"})) {}
+    : variants_([&shaders](const gl::Defines& defines) {
+        return shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", defines);
+      }) {}
 
 void GBufferPass::resize(glm::ivec2 size_px) {
   if (buffer_.depth && buffer_.size_px() == size_px) return;
@@ -28,16 +27,10 @@ void GBufferPass::resize(glm::ivec2 size_px) {
 
 const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed) {
   framebuffer_.bind();
-  const GLuint zero_bits[4] = {0, 0, 0, 0};
-  const GLfloat zero[4] = {0, 0, 0, 0};
-  glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 0, zero_bits);
-  glClearNamedFramebufferuiv(framebuffer_.id(), GL_COLOR, 1, zero_bits);
-  glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 2, zero);
-  glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, zero);
+  const GLfloat nothing_there = 0.0f;  // where it stays, nobody looks at the other textures
+  glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, &nothing_there);
 
-  const Variant& variant = scene.has_all_textures() ? all_textures_
-                           : scene.has_textures()   ? base_color_textures_
-                                                    : plain_;
+  Variant& variant = variants_.with(scene.texture_defines());
   variant.program->use();
   variant.frame_seed = seed;
   glEnable(GL_DEPTH_TEST);

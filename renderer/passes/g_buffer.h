@@ -22,6 +22,7 @@ class GBufferPass {
  public:
   explicit GBufferPass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 size_px);
+  const GBuffer& g_buffer() const { return buffer_; }
   /// The camera block must be bound. `seed` decides the coverage of blended surfaces.
   const GBuffer& run(const DeviceScene& scene, std::uint32_t seed);
 
@@ -31,7 +32,7 @@ class GBufferPass {
     gl::ProgramPtr program;
     gl::Uniform<std::uint32_t> frame_seed;
   };
-  Variant plain_, base_color_textures_, all_textures_;
+  gl::Variants<Variant> variants_;
   GBuffer buffer_;
   gl::Framebuffer framebuffer_;
 };

@@ -13,12 +13,16 @@ IndirectMap make_indirect_map(glm::ivec2 size_px) {
 }
 
 GatherPass::GatherPass(gl::ShaderLibrary& shaders)
-    : program_(shaders.compute("passes/gather.comp")),
-      grid_(program_),
-      direction_count_(program_, "direction_count"),
-      total_directions_(program_, "total_directions"),
-      first_batch_(program_, "first_batch"),
-      literal_(program_, "literal") {}
+    : corrected_(shaders.compute("passes/gather.comp")),
+      literal_(shaders.compute("passes/gather.comp", {"LITERAL 1"})) {}
+
+GatherPass::Variant::Variant(const gl::ProgramPtr& p)
+    : program(p),
+      grid(p),
+      direction_count(p, "direction_count"),
+      total_directions(p, "total_directions"),
+      first_batch(p, "first_batch"),
+      environment_share(p, "environment_share") {}
 
 void GatherPass::resize(glm::ivec2 map_size_px) {
   if (occlusion_distance_ && occlusion_distance_.size_px() == map_size_px) return;
@@ -28,22 +32,23 @@ void GatherPass::resize(glm::ivec2 map_size_px) {
   guide_ = gl::Texture("filter guide", GL_RGBA32UI, map_size_px);
 }
 
-void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const Directions& directions,
-                     const OcclusionMap& occlusion, const HitRadiance& radiance, std::uint32_t total_directions,
-                     bool literal, IndirectMap& map) {
+void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+                     const Directions& directions, const OcclusionMap& occlusion, const Gathering& gathering,
+                     IndirectMap& map) {
   g_buffer.bind();
-  directions.weight_texels.bind(UNIT_WEIGHTS);
+  blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
+  directions.arriving_texels.bind(UNIT_ARRIVING);
   occlusion.hit_texels.bind(UNIT_HITS);
-  radiance.texels.bind(UNIT_HIT_RADIANCE);
   map.image.bind_image(0, GL_READ_WRITE);
   occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
   guide_.bind_image(2, GL_WRITE_ONLY);
-  grid_.set(grid);
-  direction_count_ = directions.count;
-  total_directions_ = total_directions;
-  first_batch_ = directions.first == 0 ? 1 : 0;
-  literal_ = literal ? 1 : 0;
-  program_->dispatch(grid.map_size_px);
+  Variant& variant = gathering.literal ? literal_ : corrected_;
+  variant.grid.set(grid, blocks.slots());
+  variant.direction_count = directions.count;
+  variant.total_directions = gathering.total_directions;
+  variant.first_batch = directions.first == 0 ? 1 : 0;
+  variant.environment_share = gathering.misses_see_environment ? 1.0f : 0.0f;
+  variant.program->dispatch(grid.map_size_px);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

@@ -18,15 +18,21 @@ struct IndirectMap {
 /// Makes an empty map of this size.
 IndirectMap make_indirect_map(glm::ivec2 size_px);
 
+/// How the hits of a batch are summed.
+struct Gathering {
+  std::uint32_t total_directions;
+  bool literal;                 // the sum as Algorithm 2 prints it
+  bool misses_see_environment;  // in the first bounce, corrected
+};
+
 class GatherPass {
  public:
   explicit GatherPass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 map_size_px);
 
-  /// Adds a batch of `total_directions` to `map`; the first batch starts it anew.
-  void run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const Directions& directions,
-           const OcclusionMap& occlusion, const HitRadiance& radiance, std::uint32_t total_directions, bool literal,
-           IndirectMap& map);
+  /// Adds a batch of directions to `map`; the first batch starts it anew.
+  void run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+           const Directions& directions, const OcclusionMap& occlusion, const Gathering& gathering, IndirectMap& map);
 
   /// Mean distance of a pixel's hits in the first batch, metres (R32F).
   const gl::Texture& occlusion_distance() const { return occlusion_distance_; }
@@ -34,10 +40,15 @@ class GatherPass {
   const gl::Texture& guide() const { return guide_; }
 
  private:
-  gl::ProgramPtr program_;
-  IndirectMapUniforms grid_;
-  gl::Uniform<std::uint32_t> direction_count_, total_directions_;
-  gl::Uniform<int> first_batch_, literal_;
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p);
+    gl::ProgramPtr program;
+    IndirectMapUniforms grid;
+    gl::Uniform<std::uint32_t> direction_count, total_directions;
+    gl::Uniform<int> first_batch;
+    gl::Uniform<float> environment_share;
+  };
+  Variant corrected_, literal_;
   gl::Texture occlusion_distance_, guide_;
 };
 

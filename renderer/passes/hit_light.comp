@@ -1,6 +1,6 @@
 // Light leaving the hits towards their pixels: the occlusion map as indirect light sources (thesis 4.2). A hit in shadow
-// gives nothing but its own emission; a miss gives the environment. Rays and hits are read as buffer textures, see
-// shaders/scene_data.glsl.
+// gives nothing but its own emission; misses are not here, see gather.comp. Rays and hits are read as buffer textures,
+// see shaders/scene_data.glsl.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -16,19 +16,18 @@ layout(local_size_x = 64) in;
 #include "shaders/surface.glsl"
 #include "shaders/hit_surface.glsl"
 #include "shaders/lights.glsl"
-#include "shaders/environment.glsl"
+#include "shaders/hit_list.glsl"
 
 layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;  // 2 texels a ray
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit
-layout(std430, binding = BINDING_HIT_RADIANCE) writeonly buffer HitRadiance { uvec2 hit_radiance[]; };
-
-uniform uint ray_count;
+layout(binding = UNIT_WEIGHTS) uniform samplerBuffer weights;
+layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 
 #ifdef LITERAL
 // Algorithm 2 as printed: the hit's BRDF between the direction to the hit and the one to the camera. Its 1/r^2 is
-// applied where the sum is, since near hits would leave the range of halves.
+// applied where the sum is, since near hits would leave the range of halves; it knows no pdf, so no weight.
 vec3 literal_weight(Ray ray, HitPoint point, Brdf brdf) {
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 in_direction = abs((camera.eye_ws.xyz - ray.origin_ws) * frame);
@@ -51,8 +50,8 @@ vec3 light_of_hit(Ray ray, Hit hit) {
 }
 
 void main() {
-  const uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
-  if (index >= ray_count) return;
+  if (gl_GlobalInvocationID.x >= hit_count) return;
+  const uint index = hit_ray(gl_GlobalInvocationID.x);
   const vec4 origin = texelFetch(ray_texels, int(2u * index));
   const vec4 direction = texelFetch(ray_texels, int(2u * index + 1u));
   const Ray ray = Ray(origin.xyz, origin.w, direction.xyz, direction.w);
@@ -60,13 +59,9 @@ void main() {
   const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, first).x), texelFetch(hit_words, first + 1).x,
                       texelFetch(hit_words, first + 2).x, uintBitsToFloat(texelFetch(hit_words, first + 3).x),
                       uintBitsToFloat(texelFetch(hit_words, first + 4).x));
-  vec3 radiance = vec3(0.0);
-  if (hit.t >= 0.0)
-    radiance = light_of_hit(ray, hit);
+  vec3 radiance = light_of_hit(ray, hit);
 #ifndef LITERAL
-  else if (ray.t_max > 0.0)
-    radiance = environment_radiance(ray.direction_ws);
+  radiance *= texelFetch(weights, int(index)).rgb;
 #endif
-  radiance = min(radiance, vec3(65504.0));  // the largest half
-  hit_radiance[index] = uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 0.0)));
+  arriving[index] = vec4(radiance, hit.t);
 }

@@ -6,70 +6,50 @@ namespace lightwell {
 
 namespace {
 
-const std::vector<std::string> kGeneral = {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "HAS_ENVIRONMENT_IMAGE 1",
-                                           "MANY_LIGHTS 1"};
-const std::vector<std::string> kLiteral = {"HAS_TEXTURES 1", "ALL_TEXTURES 1", "MANY_LIGHTS 1", "LITERAL 1"};
+const gl::Defines kLiteral{"LITERAL 1"};
 
 }  // namespace
 
-HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
-    : plain_(shaders.compute("passes/hit_light.comp")),
-      many_lights_(shaders.compute("passes/hit_light.comp", {"MANY_LIGHTS 1"})),
-      base_color_textures_(shaders.compute("passes/hit_light.comp", {"HAS_TEXTURES 1"})),
-      general_(shaders.compute("passes/hit_light.comp", kGeneral)),
-      literal_(shaders.compute("passes/hit_light.comp", kLiteral)),
-      special_([&shaders](const std::vector<std::string>& defines) {
-        return shaders.compute("passes/hit_light.comp", with_defines(kGeneral, defines));
-      }),
-      special_literal_([&shaders](const std::vector<std::string>& defines) {
-        return shaders.compute("passes/hit_light.comp", with_defines(kLiteral, defines));
-      }),
-      screen_program_(shaders.compute("passes/screen_light.comp")),
-      screen_ray_count_(screen_program_, "ray_count") {
-  radiance_.radiance = gl::Buffer("hit radiance", 0);
+void OcclusionMap::resize(std::uint32_t most_rays) {
+  hits.reserve(std::uint64_t{most_rays} * sizeof(Hit));
+  hit_texels.attach(hits);
+  list.resize(most_rays);
 }
 
-void HitLightPass::resize(std::uint32_t most_rays) {
-  radiance_.radiance.reserve(std::uint64_t{most_rays} * 8);
-  radiance_.texels.attach(radiance_.radiance);
-}
+HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
+    : from_lights_(
+          [&shaders](const gl::Defines& defines) { return shaders.compute("passes/hit_light.comp", defines); }),
+      from_screen_(
+          [&shaders](const gl::Defines& defines) { return shaders.compute("passes/screen_light.comp", defines); }) {}
 
 void HitLightPass::bind(const Directions& directions, const OcclusionMap& occlusion) const {
   directions.rays.bind_storage(BINDING_RAYS);
-  occlusion.hits.bind_storage(BINDING_HITS);
-  radiance_.radiance.bind_storage(BINDING_HIT_RADIANCE);
-}
-
-HitLightPass::Variant& HitLightPass::variant_for(const DeviceScene& scene, bool literal) {
-  if (!scene.brdf_variant().plain()) return (literal ? special_literal_ : special_).at(scene.brdf_variant());
-  if (literal) return literal_;
-  if (scene.has_all_textures() || scene.has_environment_image()) return general_;
-  if (scene.has_textures()) return scene.has_many_lights() ? general_ : base_color_textures_;
-  return scene.has_many_lights() ? many_lights_ : plain_;
-}
-
-const HitRadiance& HitLightPass::run(const DeviceScene& scene, const Directions& directions,
-                                     const OcclusionMap& occlusion, const ShadowMaps& shadows, bool literal) {
-  bind(directions, occlusion);
   directions.ray_texels.bind(UNIT_RAYS);
+  directions.weight_texels.bind(UNIT_WEIGHTS);
+  directions.arriving.bind_storage(BINDING_ARRIVING);
+  occlusion.hits.bind_storage(BINDING_HITS);
   occlusion.hit_texels.bind(UNIT_HITS);
-  shadows.bind();
-  Variant& variant = variant_for(scene, literal);
-  variant.ray_count = directions.ray_count;
-  variant.program->dispatch(directions.ray_count);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  return radiance_;
+  occlusion.list.dispatch.bind_storage(BINDING_HIT_DISPATCH);
+  occlusion.list.texels.bind(UNIT_HIT_LIST);
 }
 
-const HitRadiance& HitLightPass::run_from_screen(const GBuffer& g_buffer, const Directions& directions,
-                                                 const OcclusionMap& occlusion, const gl::Texture& previous_bounce) {
+void HitLightPass::run(const DeviceScene& scene, const OcclusionMap& occlusion, const ShadowMaps& shadows, bool literal,
+                       Directions& directions) {
+  bind(directions, occlusion);
+  shadows.bind();
+  const gl::Defines defines =
+      gl::joined(gl::joined(scene.texture_defines(), scene.light_defines()), scene.brdf_defines());
+  from_lights_.with(literal ? gl::joined(defines, kLiteral) : defines)->dispatch_indirect(occlusion.list.dispatch);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void HitLightPass::run_from_screen(const GBuffer& g_buffer, const OcclusionMap& occlusion,
+                                   const gl::Texture& previous_bounce, bool literal, Directions& directions) {
   bind(directions, occlusion);
   g_buffer.bind();
   previous_bounce.bind(UNIT_IMAGE_A);
-  screen_ray_count_ = directions.ray_count;
-  screen_program_->dispatch(directions.ray_count);
+  from_screen_.with(literal ? kLiteral : gl::Defines{})->dispatch_indirect(occlusion.list.dispatch);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  return radiance_;
 }
 
 }  // namespace lightwell

@@ -14,7 +14,7 @@ struct IndirectMapGrid {
   glm::vec2 jitter{0.5f};  // where in its block the representative pixel lies, [0, 1)
 
   /// Places for rays of one direction: whole blocks of 16 x 16 pixels, as shaders/indirect_map.glsl orders them.
-  std::uint32_t slots() const {
+  std::uint32_t most_slots() const {
     const glm::ivec2 blocks = (map_size_px + 15) / 16;
     return static_cast<std::uint32_t>(blocks.x * blocks.y * 256);
   }
@@ -30,15 +30,20 @@ struct IndirectMapGrid {
 
 struct IndirectMapUniforms {
   explicit IndirectMapUniforms(const gl::ProgramPtr& program)
-      : size_px(program, "indirect_size_px"), scale(program, "indirect_scale"), jitter(program, "indirect_jitter") {}
-  void set(const IndirectMapGrid& grid) {
+      : size_px(program, "indirect_size_px"),
+        scale(program, "indirect_scale"),
+        jitter(program, "indirect_jitter"),
+        slot_count(program, "slot_count") {}
+  void set(const IndirectMapGrid& grid, std::uint32_t slots) {
     size_px = grid.map_size_px;
     scale = glm::vec2(grid.picture_size_px) / glm::vec2(grid.map_size_px);
     jitter = grid.jitter;
+    slot_count = slots;
   }
   gl::Uniform<glm::ivec2> size_px;
   gl::Uniform<glm::vec2> scale;
   gl::Uniform<glm::vec2> jitter;
+  gl::Uniform<std::uint32_t> slot_count;
 };
 
 }  // namespace lightwell

@@ -9,13 +9,13 @@ layout(local_size_x = 64) in;
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/ray.glsl"
+#include "shaders/hit_list.glsl"
 
 layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = BINDING_HIT_RADIANCE) writeonly buffer HitRadiance { uvec2 hit_radiance[]; };
+layout(binding = UNIT_WEIGHTS) uniform samplerBuffer weights;
+layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_bounce;  // demodulated indirect map
-
-uniform uint ray_count;
 
 const float kDepthTolerance = 0.02;  // relative; a seen surface's own slope within a pixel stays below it
 
@@ -33,10 +33,12 @@ vec3 screen_radiance(vec3 position_ws) {
 }
 
 void main() {
-  const uint index = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
-  if (index >= ray_count) return;
-  const float t = hits[index].t;
-  vec3 radiance = t < 0.0 ? vec3(0.0) : screen_radiance(rays[index].origin_ws + t * rays[index].direction_ws);
-  radiance = min(radiance, vec3(65504.0));
-  hit_radiance[index] = uvec2(packHalf2x16(radiance.rg), packHalf2x16(vec2(radiance.b, 0.0)));
+  if (gl_GlobalInvocationID.x >= hit_count) return;
+  const uint index = hit_ray(gl_GlobalInvocationID.x);
+  const Hit hit = hits[index];
+  vec3 radiance = screen_radiance(rays[index].origin_ws + hit.t * rays[index].direction_ws);
+#ifndef LITERAL
+  radiance *= texelFetch(weights, int(index)).rgb;
+#endif
+  arriving[index] = vec4(radiance, hit.t);
 }

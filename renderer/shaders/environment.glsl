@@ -11,19 +11,32 @@ layout(std140, binding = BINDING_ENVIRONMENT) uniform EnvironmentBlock {
 layout(binding = UNIT_ENVIRONMENT) uniform sampler2D environment_image;  // latitude-longitude, row 0 the zenith
 #endif
 
-vec3 environment_radiance(vec3 direction_ws) {
+struct Sky {
+  vec3 zenith_radiance, horizon_radiance, ground_radiance;
+  float strength;
+};
+
+// For loops: a software device would load the block anew at every turn.
+Sky load_sky() {
+  return Sky(environment.zenith_radiance.rgb, environment.horizon_radiance.rgb, environment.ground_radiance.rgb,
+             environment.horizon_radiance.w);
+}
+
+vec3 sky_radiance(Sky sky, vec3 direction_ws) {
 #ifdef HAS_ENVIRONMENT_IMAGE
   if (environment.ground_radiance.w > 0.5) {
     const float longitude = atan(direction_ws.x, -direction_ws.z) + environment.zenith_radiance.w;
     const vec2 uv = vec2(longitude / (2.0 * kPi) + 0.5, acos(clamp(direction_ws.y, -1.0, 1.0)) / kPi);
-    return textureLod(environment_image, uv, 0.0).rgb * environment.horizon_radiance.w;
+    return textureLod(environment_image, uv, 0.0).rgb * sky.strength;
   }
 #endif
   const float up = direction_ws.y;
-  const vec3 sky = mix(environment.horizon_radiance.rgb, environment.zenith_radiance.rgb, sqrt(max(up, 0.0)));
-  const vec3 below = mix(environment.horizon_radiance.rgb, environment.ground_radiance.rgb, smoothstep(0.0, 0.15, -up));
-  return (up >= 0.0 ? sky : below) * environment.horizon_radiance.w;
+  const vec3 above = mix(sky.horizon_radiance, sky.zenith_radiance, sqrt(max(up, 0.0)));
+  const vec3 below = mix(sky.horizon_radiance, sky.ground_radiance, smoothstep(0.0, 0.15, -up));
+  return (up >= 0.0 ? above : below) * sky.strength;
 }
+
+vec3 environment_radiance(vec3 direction_ws) { return sky_radiance(load_sky(), direction_ws); }
 
 vec3 background_radiance(vec3 direction_ws) {
   return environment.background.w > 0.5 ? environment.background.rgb : environment_radiance(direction_ws);

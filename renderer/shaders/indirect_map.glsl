@@ -1,4 +1,4 @@
-// Which pixel of the picture stands for a pixel of the indirect map. Needs sampling.
+// Which pixel of the picture stands for a pixel of the indirect map. Needs bindings, sampling.
 
 uniform ivec2 indirect_size_px;
 uniform vec2 indirect_scale;    // picture pixels per map pixel
@@ -14,25 +14,29 @@ ivec2 representative_pixel(ivec2 map_pixel) {
 const int kTileSide = 4;
 const int kBlockSide = 16;  // 4 x 4 tiles
 
-// Slots are those of whole blocks; some lie outside the map.
-uint slot_count() {
-  const ivec2 blocks = (indirect_size_px + kBlockSide - 1) / kBlockSide;
-  return uint(blocks.x * blocks.y * kBlockSide * kBlockSide);
-}
+// Only blocks that see a surface have slots; see passes/active_blocks.comp. Element n: the block with rank n, and the rank
+// of block n.
+layout(binding = UNIT_ACTIVE_BLOCKS) uniform usamplerBuffer active_blocks;
+const uint kNoRank = 0xffffffffu;
+
+uniform uint slot_count;  // 256 for each active block; some lie outside the map
 
 ivec2 pixel_of_slot(uint slot) {
   const int blocks_x = (indirect_size_px.x + kBlockSide - 1) / kBlockSide;
-  const int block = int(slot) / (kBlockSide * kBlockSide);
+  const int block = int(texelFetch(active_blocks, int(slot) / (kBlockSide * kBlockSide)).x);
   const int place = int(slot) / 16 % 16;  // in its tile
   const int tile = int(slot) % 16;        // in its block
   return ivec2(block % blocks_x, block / blocks_x) * kBlockSide + ivec2(tile % 4, tile / 4) * kTileSide +
          ivec2(place % 4, place / 4);
 }
 
+// kNoRank where the pixel's block has none.
 uint slot_of_pixel(ivec2 pixel) {
   const int blocks_x = (indirect_size_px.x + kBlockSide - 1) / kBlockSide;
   const ivec2 block = pixel / kBlockSide;
   const ivec2 tile = pixel % kBlockSide / kTileSide;
   const ivec2 place = pixel % kTileSide;
-  return uint(((block.y * blocks_x + block.x) * 16 + place.y * 4 + place.x) * 16 + tile.y * 4 + tile.x);
+  const uint rank = texelFetch(active_blocks, block.y * blocks_x + block.x).y;
+  if (rank == kNoRank) return kNoRank;
+  return (rank * 16u + uint(place.y * 4 + place.x)) * 16u + uint(tile.y * 4 + tile.x);
 }

@@ -1,4 +1,6 @@
 // Punctual lights and their variance shadow maps. Needs bindings, brdf, sampling.
+// Defines, for what a scene has: MANY_LIGHTS for more than two, TWO_LIGHTS for two, else there is one or none.
+// POINT_LIGHTS if some of them are.
 
 struct Light {
   vec3 position_ws;
@@ -47,11 +49,13 @@ float light_visibility(Light light, vec3 position_ws) {
   const vec4 clip = light.shadow_clip_from_world * vec4(position_ws, 1.0);
   vec2 ndc = clip.xy / clip.w;
   float layer = float(light.first_shadow_layer);
+#ifdef POINT_LIGHTS
   if (light.kind == 1u) {
     const vec3 face = cube_face(from_light);
     ndc = face.xy * shadow_cube_scale;
     layer += face.z;
   }
+#endif
   const float depth = light.kind == 0u ? clip.z : length(from_light) / light.shadow_far_m;
   const bool outside = max(abs(ndc.x), abs(ndc.y)) > 1.0 || (light.kind == 2u && clip.w <= 0.0);
   const vec2 moments = textureLod(shadow_moments, vec3(ndc * 0.5 + 0.5, layer), 0.0).rg;
@@ -95,13 +99,14 @@ vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, vec3 normal_ws, v
 // Smooth normals decide alone what faces a light: with the geometric normal, the terminator on coarse meshes would show
 // their triangles; what truly lies behind is in the shadow map's shadow.
 // The first two lights are read by constant indices: on a software device a variable one costs a load per invocation
-// and word, and a loop runs its body at least once. MANY_LIGHTS is for scenes with more than two.
+// and word, and a loop runs its body at least once.
 vec3 reflected_punctual_light(Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
   vec3 radiance = vec3(0.0);
   if (light_count > 0u)
     radiance += reflected_light(lights[0], brdf, position_ws, normal_ws, out_ws);
-  if (light_count > 1u)
-    radiance += reflected_light(lights[1], brdf, position_ws, normal_ws, out_ws);
+#if defined(TWO_LIGHTS) || defined(MANY_LIGHTS)
+  radiance += reflected_light(lights[1], brdf, position_ws, normal_ws, out_ws);
+#endif
 #ifdef MANY_LIGHTS
   for (uint i = 2u; i < light_count; ++i)
     radiance += reflected_light(lights[i], brdf, position_ws, normal_ws, out_ws);

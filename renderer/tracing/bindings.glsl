@@ -7,6 +7,8 @@
 #define TRACE_BINDING_COVERAGE 5
 #define TRACE_BINDING_CORNER_UVS 6
 #define TRACE_BINDING_ALPHA 7
+#define TRACE_BINDING_HIT_LIST 9
+#define TRACE_BINDING_HIT_DISPATCH 10
 
 #define TRACE_GROUP_SIZE 64
 // Levels of inner nodes, each of which may leave one entry on the traversal stack.

@@ -14,23 +14,33 @@ class TraceProgram {
   TraceProgram(gl::ShaderLibrary& shaders, bool any_hit, bool coverage)
       : program_(shaders.compute("tracing/trace.comp",
                                  {any_hit ? "ANY_HIT 1" : "ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0"})),
+        lists_hits_(program_, "lists_hits"),
         ray_count_(program_, "ray_count"),
         top_root_(program_, "top_root") {}
 
-  void run(const gl::Buffer& rays, std::uint32_t count, const gl::Buffer& results,
-           const DeviceHierarchies& hierarchies) const {
+  void run(const gl::Buffer& rays, std::uint32_t count, const gl::Buffer& results, const DeviceHierarchies& hierarchies,
+           HitList* list = nullptr) const {
     hierarchies.bind();
+    lists_hits_ = list ? 1 : 0;
+    if (list) {
+      constexpr std::uint32_t kNone[4] = {0, 1, 1, 0};
+      list->dispatch.upload(std::span<const std::uint32_t>(kNone));
+      list->rays.bind_storage(TRACE_BINDING_HIT_LIST);
+      list->dispatch.bind_storage(TRACE_BINDING_HIT_DISPATCH);
+    }
     rays.bind_storage(TRACE_BINDING_RAYS);
     results.bind_storage(TRACE_BINDING_RESULTS);
     ray_count_ = count;
     top_root_ = hierarchies.top_root();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program_->dispatch(count, TRACE_GROUP_SIZE);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT |
+                    GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   }
 
  private:
   gl::ProgramPtr program_;
+  gl::Uniform<int> lists_hits_;
   gl::Uniform<std::uint32_t> ray_count_, top_root_;
 };
 
@@ -40,10 +50,10 @@ class ComputeTracer final : public Tracer {
 
   void update(const TraceScene& scene) override { hierarchies_.update(scene); }
 
-  void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits) override {
+  void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Ray), <=, rays.size_bytes());
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Hit), <=, hits.size_bytes());
-    (hierarchies_.needs_coverage() ? covered_closest_hit_ : closest_hit_).run(rays, count, hits, hierarchies_);
+    (hierarchies_.needs_coverage() ? covered_closest_hit_ : closest_hit_).run(rays, count, hits, hierarchies_, list);
   }
 
   void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) override {

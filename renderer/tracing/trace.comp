@@ -15,6 +15,15 @@ layout(std430, binding = TRACE_BINDING_RESULTS) writeonly buffer Visible { uint 
 shared uint group_visible[TRACE_GROUP_SIZE / 32];
 #else
 layout(std430, binding = TRACE_BINDING_RESULTS) writeonly buffer Hits { Hit hits[]; };
+layout(std430, binding = TRACE_BINDING_HIT_LIST) writeonly buffer HitListRays { uint hit_list[]; };
+layout(std430, binding = TRACE_BINDING_HIT_DISPATCH) buffer HitListDispatch { uint hit_groups, one, one_too, hit_count; };
+uniform int lists_hits;
+
+void add_to_list(uint index) {
+  const uint place = atomicAdd(hit_count, 1u);
+  hit_list[place] = index;
+  if (place % TRACE_GROUP_SIZE == 0u) atomicAdd(hit_groups, 1u);
+}
 #endif
 layout(std430, binding = TRACE_BINDING_NODES) readonly buffer Nodes { uvec4 node_words[]; };              // BvhNode
 layout(std430, binding = TRACE_BINDING_TRIANGLES) readonly buffer Triangles { uvec4 triangle_words[]; };  // DeviceTriangle
@@ -151,5 +160,6 @@ void main() {
   if (exists && lane % 32u == 0u) visible[index / 32u] = group_visible[lane / 32u];
 #else
   if (exists) hits[index] = is_hit ? hit : Hit(-1.0, 0u, 0u, 0.0, 0.0);
+  if (lists_hits == 1 && is_hit) add_to_list(index);
 #endif
 }

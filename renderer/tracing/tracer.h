@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/gl/buffer.h"
+#include "renderer/gl/texture.h"
 #include "renderer/scene/pose.h"
 
 namespace lightwell {
@@ -33,6 +34,22 @@ struct Hit {
 static_assert(sizeof(Hit) == 20);
 
 constexpr float kMiss = -1.0f;
+
+/// Work groups of this many invocations run over a HitList.
+constexpr std::uint32_t kHitGroup = 64;
+
+/// Which rays of a batch hit something, for passes that have nothing to do for misses.
+struct HitList {
+  /// `buffers` as for the rays.
+  explicit HitList(gl::BufferUse buffers);
+  /// Room for the hits of `most_rays` rays.
+  void resize(std::uint32_t most_rays);
+
+  gl::Buffer rays;                                 // uint32 each: indices of rays, in no particular order
+  gl::BufferTexture texels{"hit list", GL_R32UI};  // the same
+  gl::Buffer
+      dispatch;  // uint32 x 4: groups of kHitGroup in x, 1, 1 (an indirect dispatch's arguments); the count of hits
+};
 
 /// Which triangles count: alpha from the base-colour texture, tested alike by both tracers.
 /// Texel is nearest, wrap as the sampler says; alpha = texel.a * factor (vertex colours are not looked at).
@@ -65,8 +82,9 @@ class Tracer {
   virtual void update(const TraceScene& scene) = 0;
 
   /// For rays[0, count): the nearest hit with t_min < t < t_max, or t = kMiss. Both sides of a triangle are hit.
-  /// Buffers hold Ray and Hit elements. The call orders itself against GL commands before and after it.
-  virtual void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits) = 0;
+  /// Buffers hold Ray and Hit elements. `list`, where not null, is filled with the rays that hit.
+  /// The call orders itself against GL commands before and after it.
+  virtual void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list = nullptr) = 0;
 
   /// For rays[0, count): bit (i % 32) of word (i / 32) of `visible` is 1 where nothing lies between t_min and t_max.
   virtual void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) = 0;

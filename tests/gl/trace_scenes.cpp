@@ -176,4 +176,22 @@ BruteHit brute_force(const TraceWorld& world, const Ray& ray) {
   return best;
 }
 
+PlaneDistance plane_distance(const TraceWorld& world, const Ray& ray, const Hit& hit) {
+  const Instance& instance = world.instances.at(hit.instance);
+  const Primitive& primitive = *instance.primitive;
+  const auto& positions = instance.deformed ? instance.deformed->positions : primitive.positions;
+  const glm::dmat4 world_from_object(instance.world_from_object);
+  const glm::dvec3 origin(ray.origin_ws), direction(ray.direction_ws);
+  glm::dvec3 largest = glm::abs(origin), corners[3];
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const glm::dvec3 p(positions.at(primitive.indices.at(3 * hit.triangle + k)));
+    corners[k] = glm::dvec3(world_from_object * glm::dvec4(p, 1.0));
+    largest = glm::max(largest, glm::max(glm::abs(p), glm::abs(corners[k])));
+  }
+  const glm::dvec3 normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+  const double cosine = glm::dot(normal, direction);
+  return {glm::dot(normal, corners[0] - origin) / cosine, std::abs(cosine),
+          std::max({largest.x, largest.y, largest.z})};
+}
+
 }  // namespace lightwell::test

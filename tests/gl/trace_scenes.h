@@ -52,4 +52,12 @@ struct BruteHit {
 };
 BruteHit brute_force(const TraceWorld& world, const Ray& ray);
 
+/// Where a ray meets the plane of the triangle it hit, in double precision.
+struct PlaneDistance {
+  double distance_m;
+  double cosine;                // of the ray with the plane's normal, 0 to 1
+  double largest_coordinate_m;  // of the ray's origin and the triangle, in the world or the object
+};
+PlaneDistance plane_distance(const TraceWorld& world, const Ray& ray, const Hit& hit);
+
 }  // namespace lightwell::test

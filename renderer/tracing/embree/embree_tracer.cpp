@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "renderer/check.h"
 #include "renderer/tracing/embree/embree_scene.h"
@@ -130,13 +132,36 @@ bool is_active(const Ray& ray) {
   return ray.t_max >= ray.t_min;
 }
 
+// A HitList being filled by several threads, each of which gathers the hits of a chunk before it takes room for them.
+class HitListWriter {
+ public:
+  explicit HitListWriter(std::uint32_t* rays) : rays_(rays) {}
+  void add(std::span<const std::uint32_t> hits) {
+    if (rays_ != nullptr)
+      std::copy(hits.begin(), hits.end(), rays_ + count_.fetch_add(static_cast<std::uint32_t>(hits.size())));
+  }
+  std::uint32_t count() const { return count_; }
+
+ private:
+  std::uint32_t* rays_;
+  std::atomic<std::uint32_t> count_ = 0;
+};
+
 template <int width>
-void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, std::uint32_t begin, std::uint32_t end) {
+void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, HitListWriter& list, std::uint32_t begin,
+                  std::uint32_t end) {
   const FlushDenormals flush;
   Packet<width> packet;
+  std::array<std::uint32_t, kChunkRays> hit_rays;
+  std::size_t hit_count = 0;
   const auto finish = [&] {
     packet.intersect(scene);
-    for (int lane = 0; lane < packet.size(); ++lane) hits[packet.ray(lane)] = packet.hit(lane, scene);
+    for (int lane = 0; lane < packet.size(); ++lane) {
+      const Hit hit = packet.hit(lane, scene);
+      hits[packet.ray(lane)] = hit;
+      hit_rays[hit_count] = packet.ray(lane);
+      hit_count += hit.t >= 0.0f ? 1 : 0;
+    }
     packet.clear();
   };
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -147,6 +172,7 @@ void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, std::uin
     if (packet.is_full()) finish();
   }
   if (!packet.is_empty()) finish();
+  list.add(std::span(hit_rays).first(hit_count));
 }
 
 template <int width>
@@ -187,20 +213,26 @@ class EmbreeTracer final : public Tracer {
 
   void update(const TraceScene& scene) override { scene_.update(scene); }
 
-  void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits) override {
+  void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Hit), <=, hits.size_bytes());
     const Ray* in = rays_of(rays, count);
     Hit* out = host_of<Hit>(hits);
-    if (count == 0) return;
+    HitListWriter writer(list ? host_of<std::uint32_t>(list->rays) : nullptr);
     gl::wait_for_device();
     pool_.parallel_for(count, kChunkRays, [&](std::uint32_t begin, std::uint32_t end) {
       if (width_ == 16)
-        closest_hits<16>(scene_, in, out, begin, end);
+        closest_hits<16>(scene_, in, out, writer, begin, end);
       else if (width_ == 8)
-        closest_hits<8>(scene_, in, out, begin, end);
+        closest_hits<8>(scene_, in, out, writer, begin, end);
       else
-        closest_hits<4>(scene_, in, out, begin, end);
+        closest_hits<4>(scene_, in, out, writer, begin, end);
     });
+    if (!list) return;
+    const std::uint32_t hit_count = writer.count();
+    std::uint32_t* dispatch = host_of<std::uint32_t>(list->dispatch);
+    dispatch[0] = (hit_count + kHitGroup - 1) / kHitGroup;
+    dispatch[1] = dispatch[2] = 1;
+    dispatch[3] = hit_count;
   }
 
   void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) override {
