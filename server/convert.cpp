@@ -140,13 +140,16 @@ Problem problem_of(const Error& error, std::string pointer) {
   return protocol::make_problem(500, "the picture could not be made");
 }
 
-protocol::Decoded<Scene> edited(const Scene& scene, const protocol::Edits& edits) {
+protocol::Decoded<Scene> edited(const Scene& scene, const protocol::Edits& edits, const ServeLimits& limits) {
   Scene copy = scene;  // shares meshes and images
   std::size_t refused = edits.size();
-  const Status status = apply_edits(copy, edits, {}, &refused);
+  EditLimits edit_limits;
+  edit_limits.max_triangles = limits.max_triangles;
+  const Status status = apply_edits(copy, edits, edit_limits, &refused);
   if (status) return copy;
   if (status.error().kind == ErrorKind::kInternal) return problem_of(status.error());
   const std::string pointer = refused < edits.size() ? "/edits/" + std::to_string(refused) : "/edits";
+  if (status.error().kind == ErrorKind::kTooLarge) return problem_of(status.error(), pointer);
   return unprocessable(pointer, status.error().message());
 }
 

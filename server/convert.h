@@ -24,8 +24,8 @@ protocol::SettingsSpec spec_of(const Settings& settings);
 /// whose text tells nothing of our insides).
 protocol::Problem problem_of(const Error& error, std::string pointer = {});
 
-/// `scene` with all edits, or a problem (422) whose pointer is that of the edit in a body's `edits`.
-protocol::Decoded<Scene> edited(const Scene& scene, const protocol::Edits& edits);
+/// `scene` with all edits, or a problem (422, 413 over a limit) whose pointer is that of the edit in a body's `edits`.
+protocol::Decoded<Scene> edited(const Scene& scene, const protocol::Edits& edits, const ServeLimits& limits);
 
 /// A camera at `eye` that looks at `target`, +Y up.
 PlacedCamera placed(const protocol::FreeCamera& camera);

@@ -3,7 +3,10 @@
 namespace lightwell {
 
 RunningServer::RunningServer(const ServeOptions& options, MakePictureSource make_source)
-    : base_path_(options.base_path), net_(net_options(options)), service_(options, std::move(make_source)) {
+    : base_path_(options.base_path),
+      tls_(!options.tls_certificate.empty()),
+      net_(net_options(options)),
+      service_(options, std::move(make_source)) {
   net_.start(service_);
 }
 
@@ -13,7 +16,11 @@ RunningServer::~RunningServer() {
 }
 
 std::string RunningServer::url() const {
-  return "http://" + net_.host_in_url() + ":" + std::to_string(net_.port()) + base_path_ + "/";
+  return (tls_ ? "https://" : "http://") + net_.host_in_url() + ":" + std::to_string(net_.port()) + base_path_ + "/";
+}
+
+void RunningServer::announce_drain() {
+  service_.announce_drain();
 }
 
 bool RunningServer::drain(std::chrono::milliseconds limit) {
@@ -25,6 +32,9 @@ net::ServerOptions RunningServer::net_options(const ServeOptions& options) {
   net::ServerOptions result;
   result.host = options.host;
   result.port = options.port;
+  result.loopback_only = options.access.tokens.empty();
+  result.tls_certificate = options.tls_certificate;
+  result.tls_key = options.tls_key;
   result.max_connections = options.limits.max_connections;
   result.max_bodies_bytes = 2 * options.limits.max_upload_bytes + (64u << 20);
   return result;

@@ -19,6 +19,8 @@ class RunningServer {
   std::string url() const;
   std::shared_future<SourceFacts> ready() const { return service_.ready(); }
 
+  /// Is not ready from here on, and serves as before: time for those who send requests here to notice.
+  void announce_drain();
   /// Tells viewers to reconnect elsewhere and lets what is in flight end; true if it did in time.
   bool drain(std::chrono::milliseconds limit);
 
@@ -26,6 +28,7 @@ class RunningServer {
   static net::ServerOptions net_options(const ServeOptions& options);
 
   const std::string base_path_;
+  const bool tls_;
   net::Server net_;  // first: a port that is taken is known at once
   Service service_;
 };

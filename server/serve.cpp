@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <thread>
 
 #include "server/running_server.h"
 
@@ -26,7 +27,7 @@ sigset_t stop_signals() {
 class StopSignals {
  public:
   StopSignals() : set_(stop_signals()) { ::pthread_sigmask(SIG_BLOCK, &set_, &before_); }
-  ~StopSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  ~StopSignals() { give_back(); }
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
@@ -34,6 +35,8 @@ class StopSignals {
     int which = 0;
     ::sigwait(&set_, &which);
   }
+  /// The next one ends the process at once.
+  void give_back() const { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
   /// True if one came within the time.
   bool wait_for(std::chrono::milliseconds limit) const {
     const timespec time{limit.count() / 1000, (limit.count() % 1000) * 1'000'000};
@@ -64,6 +67,9 @@ void run(const ServeOptions& options, const StopSignals& signals) {
   fmt::print("Lightwell is at {}\n", server.url());
   std::fflush(stdout);
   signals.wait();
+  signals.give_back();  // who asks twice does not want to wait
+  server.announce_drain();
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.drain_delay_s));
   fmt::print(stderr, "Stopping: what is in flight is finished first\n");
   if (!server.drain(kDrainLimit)) fmt::print(stderr, "Some connections did not end in time\n");
 }

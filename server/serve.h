@@ -6,17 +6,20 @@
 #include <vector>
 
 #include "renderer/renderer.h"
+#include "server/access/access_control.h"
 
 namespace lightwell {
 
 /// What one server gives away at most. Whatever exceeds a limit gets an answer that names it.
 struct ServeLimits {
-  int max_size_px = 4096;                         // a picture's width and height
-  int max_samples = 1024;                         // directions per pixel of the indirect map
-  int max_spp_frames = 4096;                      // accumulated frames of one render request
-  std::uint64_t max_upload_bytes = 256ull << 20;  // one .glb
-  std::uint64_t max_scene_bytes = 1024ull << 20;  // all uploaded scenes together, as uploaded
-  int max_scenes = 64;                            // uploaded scenes
+  int max_size_px = 4096;                           // a picture's width and height
+  std::uint64_t max_triangles = 8'000'000;          // one scene's, over all instances
+  std::uint64_t max_texture_bytes = 2048ull << 20;  // one scene's, decoded
+  int max_samples = 1024;                           // directions per pixel of the indirect map
+  int max_spp_frames = 4096;                        // accumulated frames of one render request
+  std::uint64_t max_upload_bytes = 256ull << 20;    // one .glb
+  std::uint64_t max_scene_bytes = 1024ull << 20;    // all uploaded scenes together, as uploaded
+  int max_scenes = 64;                              // uploaded scenes
   int max_sessions = 64;
   int max_connections = 4096;
   int max_viewers_per_session = 128;
@@ -32,16 +35,19 @@ inline Settings viewing_settings() {
 }
 
 struct ServeOptions {
-  std::string scene = "builtin:atrium";      // a path to .glb or .gltf, or builtin:NAME; what the viewer opens with
-  std::string host = "127.0.0.1";            // the address to listen on
-  int port = 8080;                           // 0: any free port
-  std::string device;                        // as gl::DeviceChoice::request
-  std::string tracer;                        // as RendererOptions::tracer
-  Settings settings = viewing_settings();    // what a session starts with
-  int quality = 80;                          // JPEG quality while the picture moves, 1..100; a still one ends at 95
-  std::string base_path;                     // "/lightwell" if a proxy forwards that prefix; empty: none
-  std::vector<std::string> allowed_origins;  // pages from elsewhere that may open streams, "https://example.org"
-  std::string web_client_dir;                // serves the viewer from this folder; empty: from the binary
+  std::string scene = "builtin:atrium";    // a path to .glb or .gltf, or builtin:NAME; what the viewer opens with
+  std::string host = "127.0.0.1";          // the address to listen on
+  int port = 8080;                         // 0: any free port
+  std::string device;                      // as gl::DeviceChoice::request
+  std::string tracer;                      // as RendererOptions::tracer
+  Settings settings = viewing_settings();  // what a session starts with
+  int quality = 80;                        // JPEG quality while the picture moves, 1..100; a still one ends at 95
+  std::string base_path;                   // "/lightwell" if a proxy forwards that prefix; empty: none
+  AccessOptions access;                    // who may do what
+  std::string tls_certificate;             // PEM, with its chain; empty: plain HTTP
+  std::string tls_key;                     // PEM
+  double drain_delay_s = 0.0;              // how long a stopping server serves on while it says that it is not ready
+  std::string web_client_dir;              // serves the viewer from this folder; empty: from the binary
   ServeLimits limits;
 };
 

@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "server/http/router.h"
-#include "server/origin.h"
 #include "server/services.h"
 
 namespace lightwell {
@@ -56,16 +55,20 @@ struct Service::State {
   void load_scenes();
   Shot warm_up_shot();
   void keep_house();
-  net::Admission admit_stream(const net::RequestHead& head, const std::string& session_id);
+  std::variant<Scopes, Refusal> check_access(const net::RequestHead& below,
+                                             const std::optional<std::string>& session_id);
+  net::Admission admit_stream(const net::RequestHead& head, const std::string& session_id, Scopes scopes);
   std::optional<Refusal> check_state(std::string_view path) const;
   /// The path without the base path; none if a proxy's user must be sent to the base path's "/".
   std::optional<std::string> path_below_base(const std::string& path) const;
 
   const ServeOptions options;
+  AccessControl access;
   SceneStore scenes;
   SessionStore sessions;
   SessionSurroundings surroundings;
-  std::atomic<bool> draining = false;
+  std::atomic<bool> leaving = false;              // not ready any more
+  std::atomic<bool> draining = false;             // and nothing more is begun
   std::promise<std::string> first_scene_promise;  // its name, or SceneRefused
   std::shared_future<std::string> first_scene = first_scene_promise.get_future().share();
   std::atomic<bool> scenes_loaded = false;
@@ -84,6 +87,7 @@ struct Service::State {
 
 Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source)
     : options(serve_options),
+      access(options.access),
       scenes(options.limits),
       sessions(options.limits),
       surroundings{{scenes, options.limits, options.settings},
@@ -99,13 +103,14 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
       quick_workers(std::make_unique<WorkerPool>(kQuickWorkers, kMostQuickWaiting)),
       long_workers(std::make_unique<WorkerPool>(kLongWorkers, kMostLongWaiting)) {
   services =
-      std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings, draining});
+      std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings, leaving});
   add_health_routes(routes, *services);
   add_scene_routes(routes, *services);
   add_session_routes(routes, *services);
   add_render_routes(routes, *services);
   add_viewer_routes(routes, options.web_client_dir);
-  router = std::make_unique<http::Router>(routes);
+  router = std::make_unique<http::Router>(routes,
+                                          [this](const net::RequestHead& head) { return access.answer_fields(head); });
   loader = std::thread([this] { load_scenes(); });
   housekeeper = std::thread([this] { keep_house(); });
 }
@@ -156,7 +161,23 @@ std::optional<Refusal> Service::State::check_state(std::string_view path) const 
   return {};
 }
 
-net::Admission Service::State::admit_stream(const net::RequestHead& head, const std::string& session_id) {
+/// The scopes of the request's token, if they are enough for what it asks. `below` has its path below the base path.
+std::variant<Scopes, Refusal> Service::State::check_access(const net::RequestHead& below,
+                                                           const std::optional<std::string>& session_id) {
+  if (session_id) return access.check_token(below, Scope::kView);
+  if (access.is_preflight(below)) return access.check_token(below, Scope::kPublic);
+  const auto found = routes.find(below);
+  // Nothing is told of what a token would be needed for before there is one, but that it is needed.
+  if (const auto* refusal = std::get_if<Refusal>(&found)) {
+    const Scope needed = refusal->status == 404 || refusal->status == 405 ? Scope::kPublic : Scope::kView;
+    auto scopes = access.check_token(below, needed);
+    return std::holds_alternative<Refusal>(scopes) ? scopes : std::variant<Scopes, Refusal>(*refusal);
+  }
+  return access.check_token(below, std::get<const http::Route*>(found)->scope);
+}
+
+net::Admission Service::State::admit_stream(const net::RequestHead& head, const std::string& session_id,
+                                            Scopes scopes) {
   if (!head.wants_web_socket)
     return Refusal{426, "a stream is a WebSocket", {{"Upgrade", "websocket"}, {"Connection", "Upgrade"}}};
   const std::string_view subprotocols = head.field("sec-websocket-protocol");
@@ -164,7 +185,7 @@ net::Admission Service::State::admit_stream(const net::RequestHead& head, const 
   if (!subprotocols.empty() && !named) return Refusal{400, "the WebSocket subprotocol spoken here is lightwell.v1", {}};
   const std::shared_ptr<Session> session = sessions.find(session_id);
   if (!session) return Refusal{404, "there is no such session, or it has ended", {}};
-  auto viewer = session->open_stream();
+  auto viewer = session->open_stream(scopes.has(Scope::kDrive));
   if (!viewer) return refusal_of(viewer.problem());
   return net::WebSocketAdmission{std::move(viewer).value(),
                                  named ? std::string(protocol::kSubprotocol) : std::string()};
@@ -181,8 +202,12 @@ std::shared_future<SourceFacts> Service::ready() const {
   return state_->render_loop.ready();
 }
 
+void Service::announce_drain() {
+  state_->leaving = true;
+}
+
 void Service::drain() {
-  state_->draining = true;
+  state_->leaving = state_->draining = true;
   state_->sessions.end_all(protocol::CloseCode::kDraining, "the server is stopping", true);
 }
 
@@ -200,38 +225,49 @@ void Service::stop() {
   state_->encoders.reset();
 }
 
-net::Admission Service::admit(const net::RequestHead& head, const net::Peer&) {
+net::Admission Service::admit(const net::RequestHead& head, const net::Peer& peer) {
   const std::optional<std::string> path = state_->path_below_base(head.path);
   if (!path)
     return Refusal{308, "the viewer is at " + head.path + "/", {{"Location", state_->options.base_path + "/"}}};
-  if (auto refusal = state_->check_state(*path)) return *refusal;
-  if (!origin_allowed(head, state_->options.allowed_origins))
-    return Refusal{403, "requests of pages from " + std::string(head.field("origin")) + " are not served", {}};
-  const auto session_id = session_of_stream(*path);
-  if (session_id && head.method == "GET") return state_->admit_stream(head, *session_id);
-
+  const bool about_health = *path == "/healthz" || *path == "/readyz";
+  if (!about_health)
+    if (auto refusal = state_->access.check_origin_and_rate(head, peer)) return *refusal;
   net::RequestHead below = head;
   below.path = *path;
-  const auto found = state_->routes.find(below);
-  if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
-  return net::HttpAdmission{std::get<const http::Route*>(found)->max_body_bytes};
+  const auto session_id = head.method == "GET" ? session_of_stream(*path) : std::nullopt;
+  const auto scopes = state_->check_access(below, session_id);
+  if (const auto* refusal = std::get_if<Refusal>(&scopes)) return *refusal;
+  if (state_->access.is_preflight(head)) return net::HttpAdmission{};
+  if (auto refusal = state_->check_state(*path)) return *refusal;
+  if (session_id) return state_->admit_stream(head, *session_id, std::get<Scopes>(scopes));
+  return net::HttpAdmission{std::get<const http::Route*>(state_->routes.find(below))->max_body_bytes};
 }
 
-void Service::answer(net::Request request, std::function<void(std::string)> done) {
+void Service::answer(net::Request request, std::function<void(net::Answer)> done) {
   request.head.path = state_->path_below_base(request.head.path).value_or("/");
+  const auto refuse = [&](const Refusal& refusal) {
+    done({refusal_response(refusal, request.keep_alive, &request.head), nullptr});
+  };
+  if (state_->access.is_preflight(request.head)) {
+    http::Fields fields = state_->access.answer_fields(request.head);
+    for (auto& field : AccessControl::preflight_fields()) fields.push_back(std::move(field));
+    return done({http::wire_format({204, {}, {}, {}}, request.keep_alive, fields), nullptr});
+  }
   const auto found = state_->routes.find(request.head);
-  if (const auto* refusal = std::get_if<Refusal>(&found)) return done(refusal_response(*refusal, request.keep_alive));
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return refuse(*refusal);
   const bool quick = std::get<const http::Route*>(found)->effort == http::Effort::kQuick;
-  const bool keep_alive = request.keep_alive;
   WorkerPool& workers = quick ? *state_->quick_workers : *state_->long_workers;
   auto shared = std::make_shared<net::Request>(std::move(request));
   const bool taken =
       workers.try_post([router = state_->router.get(), shared, done] { done(router->respond(std::move(*shared))); });
-  if (!taken) done(refusal_response(busy("too many requests wait already"), keep_alive));
+  if (taken) return;
+  request = std::move(*shared);
+  refuse(busy("too many requests wait already"));
 }
 
-std::string Service::refusal_response(const Refusal& refusal, bool keep_alive) {
-  return http::wire_format(http::refusal_response(refusal), keep_alive);
+std::string Service::refusal_response(const Refusal& refusal, bool keep_alive, const net::RequestHead* head) {
+  return http::wire_format(http::refusal_response(refusal), keep_alive,
+                           head ? state_->access.answer_fields(*head) : http::Fields());
 }
 
 }  // namespace lightwell

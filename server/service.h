@@ -29,15 +29,17 @@ class Service : public net::Application {
   /// gl::NoDevice, or another exception.
   std::shared_future<SourceFacts> ready() const;
 
-  /// Not ready from here on; all streams are told to reconnect elsewhere and closed.
+  /// Not ready from here on, but served as before.
+  void announce_drain();
+  /// Not ready, and nothing but health is served, from here on; all streams are told to reconnect elsewhere and closed.
   void drain();
   /// Ends the render thread and the workers. The connection layer must have stopped calling.
   void stop();
 
   // net::Application
   net::Admission admit(const net::RequestHead& head, const net::Peer& peer) override;
-  void answer(net::Request request, std::function<void(std::string)> done) override;
-  std::string refusal_response(const net::Refusal& refusal, bool keep_alive) override;
+  void answer(net::Request request, std::function<void(net::Answer)> done) override;
+  std::string refusal_response(const net::Refusal& refusal, bool keep_alive, const net::RequestHead* head) override;
 
  private:
   struct State;

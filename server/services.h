@@ -18,7 +18,7 @@ struct Services {
   RenderLoop& render_loop;
   WorkerPool& encoders;
   const SessionSurroundings& surroundings;
-  const std::atomic<bool>& draining;
+  const std::atomic<bool>& leaving;
 };
 
 // Each adds its routes; `services` outlives the table.

@@ -1,5 +1,7 @@
 #include "server/worker_pool.h"
 
+#include <spdlog/spdlog.h>
+
 namespace lightwell {
 
 WorkerPool::WorkerPool(std::size_t threads, std::size_t most_waiting) : most_waiting_(most_waiting) {
@@ -35,7 +37,11 @@ void WorkerPool::run() {
       work = std::move(waiting_.front());
       waiting_.pop_front();
     }
-    work();
+    try {
+      work();
+    } catch (const std::exception& error) {  // the end of this work alone
+      spdlog::error("a worker failed: {}", error.what());
+    }
   }
 }
 

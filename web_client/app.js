@@ -1,4 +1,5 @@
 // The viewer's parts, put together: the user's hands -> inputs -> the server -> frames and state -> what is shown.
+import { Access, ask_for_token } from "./access.js";
 import { CameraDriver } from "./camera_driver.js";
 import { Connection } from "./connection.js";
 import { FrameView } from "./frame_view.js";
@@ -26,6 +27,8 @@ const kSizeKey = "lightwell.picture_size";
 
 const base = new URL(".", location.href);
 const stage = document.getElementById("stage");
+const access = new Access(sessionStorage);
+history.replaceState(null, "", access.take_from(location.hash) || location.pathname + location.search);
 const wished = parse_hash(location.hash);
 let picture_size = localStorage.getItem(kSizeKey) ?? "auto";
 let asked_size = { width: 0, height: 0 };
@@ -76,7 +79,7 @@ const handles = new LightHandles(document.getElementById("light-layer"), documen
   rect: () => frames.rect(),
 });
 const transport = new Transport(model, { push, follow: () => camera.toggle_follow(), fit: () => camera.fit() });
-const uploader = new Uploader(base, {
+const uploader = new Uploader(base, access, {
   most_bytes: () => model.limits.max_upload_bytes,
   is_builtin: (name) => model.scenes.some((entry) => entry.name === name && entry.builtin),
   opened: async (name) => {
@@ -86,7 +89,7 @@ const uploader = new Uploader(base, {
 });
 const chrome = connect_chrome(model, stats, { push, screenshot });
 
-const connection = new Connection(base, {
+const connection = new Connection(base, access, {
   session_request: async () => {
     const request = { ...current_size(), playing: model.playing };
     if (model.scene === null) return { ...request, scene: await first_scene(), ...wished };
@@ -107,6 +110,10 @@ const connection = new Connection(base, {
   },
   on_frame: (frame) => frames.receive(frame),
   on_refused: (problem) => {
+    if (problem.status === 401) {
+      ask_for_token(access, access.token ? "That token is not known here." : "", () => connection.connect());
+      return false;
+    }
     const can_do_without = model.scene === null && Object.keys(wished).length > 0;
     if (can_do_without) show_note(`The address asks for something that is not here. ${problem.message}`, "trouble");
     delete wished.scene;
@@ -153,7 +160,7 @@ function welcomed(message, is_new_session) {
 async function refused(message) {
   show_note(words_of(message.problem, message.problem?.status), "trouble");
   const address = new URL(`v1/sessions/${connection.session}`, base);
-  const response = await fetch(address, { cache: "no-store" }).catch(() => null);
+  const response = await fetch(address, { cache: "no-store", headers: access.headers() }).catch(() => null);
   if (response?.ok) model.apply({ ...(await response.json()), type: "session" });
 }
 
@@ -182,7 +189,7 @@ document.addEventListener("visibilitychange", () => {
 });
 
 async function scene_list() {
-  const response = await fetch(new URL("v1/scenes", base), { cache: "no-store" });
+  const response = await fetch(new URL("v1/scenes", base), { cache: "no-store", headers: access.headers() });
   if (!response.ok) throw await problem_from(response);
   return (await response.json()).scenes;
 }
@@ -240,6 +247,12 @@ model.subscribe((changed) => {
   hash_timer = setTimeout(() => history.replaceState(null, "", `#${hash_of(model.scene, model.camera)}`), kHashWaitMs);
 });
 addEventListener("hashchange", () => {
+  const with_token = access.token;
+  const rest = access.take_from(location.hash);
+  if (access.token !== with_token) {
+    history.replaceState(null, "", rest || location.pathname + location.search);
+    connection.connect();
+  }
   const asked = parse_hash(location.hash);
   if (asked.scene && asked.scene !== model.scene) open_scene(asked.scene);
   if (asked.camera) push({ camera: asked.camera });

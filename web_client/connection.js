@@ -24,9 +24,13 @@ const kSilenceMs = 8000;  // no word from the server for so long: the line is de
  */
 
 export class Connection {
-  /** @param {URL} base the folder the viewer is served from @param {ConnectionOwner} owner */
-  constructor(base, owner) {
+  /**
+   * @param {URL} base the folder the viewer is served from @param {import("./access.js").Access} access
+   * @param {ConnectionOwner} owner
+   */
+  constructor(base, access, owner) {
     this.base = base;
+    this.access = access;
     this.owner = owner;
     this.session = null;
     this.resume = null;
@@ -77,13 +81,15 @@ export class Connection {
   /** Gives the session back, from a page that is being closed. */
   end_session() {
     if (!this.session) return;
-    fetch(new URL(`v1/sessions/${this.session}`, this.base), { method: "DELETE", keepalive: true }).catch(() => {});
+    const request = { method: "DELETE", keepalive: true, headers: this.access.headers() };
+    fetch(new URL(`v1/sessions/${this.session}`, this.base), request).catch(() => {});
   }
 
   /** True if a new session was made, false if the old one is still there. */
   async ensure_session() {
     if (this.session) {
-      const response = await fetch(new URL(`v1/sessions/${this.session}`, this.base), { cache: "no-store" });
+      const request = { cache: "no-store", headers: this.access.headers() };
+      const response = await fetch(new URL(`v1/sessions/${this.session}`, this.base), request);
       if (response.ok) return false;
       if (response.status !== 404 && response.status !== 410) throw await problem_from(response);
       this.session = null;
@@ -91,7 +97,7 @@ export class Connection {
     }
     const response = await fetch(new URL("v1/sessions", this.base), {
       method: "POST",
-      headers: { "content-type": "application/json" },
+      headers: { "content-type": "application/json", ...this.access.headers() },
       body: JSON.stringify(await this.owner.session_request()),
     });
     if (!response.ok) throw await problem_from(response);
@@ -102,7 +108,7 @@ export class Connection {
   open_stream(is_new) {
     const address = new URL(`v1/sessions/${this.session}/stream`, this.base);
     address.protocol = address.protocol.replace("http", "ws");
-    const socket = new WebSocket(address, subprotocol);
+    const socket = new WebSocket(address, this.access.subprotocols(subprotocol));
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     this.farewell = null;

@@ -37,10 +37,12 @@ export function refusal_of(file, most_bytes) {
 export class Uploader {
   /**
    * @param {URL} base the folder the viewer is served from
+   * @param {import("./access.js").Access} access
    * @param {object} owner `most_bytes()`, `is_builtin(name)`, and `opened(name)`: the server has the scene now
    */
-  constructor(base, owner) {
+  constructor(base, access, owner) {
     this.base = base;
+    this.access = access;
     this.owner = owner;
     this.drags = 0;
     this.zone = document.getElementById("drop-zone");
@@ -96,7 +98,8 @@ export class Uploader {
     return new Promise((resolve, reject) => {
       const request = new XMLHttpRequest();
       request.open("PUT", new URL(`v1/scenes/${name}`, this.base));
-      request.setRequestHeader("content-type", "model/gltf-binary");
+      const headers = { "content-type": "model/gltf-binary", ...this.access.headers() };
+      for (const [name, value] of Object.entries(headers)) request.setRequestHeader(name, value);
       request.upload.onprogress = (event) => event.lengthComputable && on_progress(event.loaded / event.total);
       request.onerror = () => reject(new Error("The connection broke off."));
       request.onload = () => {

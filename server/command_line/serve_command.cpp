@@ -21,8 +21,14 @@ void add_mebibytes(CLI::App& app, const std::string& name, std::uint64_t& target
   add_parsed(app, name, target_bytes, parse, "MIB", help, std::to_string(target_bytes >> 20));
 }
 
+void add_count(CLI::App& app, const std::string& name, std::uint64_t& target, const std::string& help) {
+  add_integer(app, name, target, 1, 1'000'000'000, help);
+}
+
 void add_limit_options(CLI::App& app, ServeLimits& limits) {
   add_integer(app, "--max-size", limits.max_size_px, 16, kMaxPictureSide, "A picture's longer side in pixels");
+  add_count(app, "--max-triangles", limits.max_triangles, "One uploaded or edited scene's triangles");
+  add_mebibytes(app, "--max-texture-memory", limits.max_texture_bytes, "One uploaded scene's decoded textures");
   add_integer(app, "--max-samples", limits.max_samples, 1, 4096, "Directions per pixel of the indirect map");
   add_integer(app, "--max-spp-frames", limits.max_spp_frames, 1, kAnyInt, "Accumulated frames of one render request");
   add_mebibytes(app, "--max-upload", limits.max_upload_bytes, "One uploaded scene");
@@ -37,6 +43,41 @@ void add_limit_options(CLI::App& app, ServeLimits& limits) {
       "A session without viewers and requests ends after this", "600");
 }
 
+void add_access_options(CLI::App& app, ServeOptions& options) {
+  AccessOptions& access = options.access;
+  const auto read = [](const std::string& path) { return TokenList::read(path); };
+  add_parsed(app, "--tokens", access.tokens, read, "FILE",
+             "Serve only who has one of the file's bearer tokens; lines of SCOPE[,SCOPE] TOKEN, scopes view, drive, "
+             "upload and admin");
+  const auto add_token = [&access](const std::string& token) {
+    if (const Status added = access.tokens.add(token, Scopes::all()); !added)
+      throw CLI::ValidationError("--token", added.error().message());
+  };
+  app.add_option_function<std::string>("--token", add_token,
+                                       "One token with all scopes; the environment hides it better from others")
+      ->type_name("TOKEN")
+      ->envname("LIGHTWELL_TOKEN");
+  app.add_option("--tls-certificate", options.tls_certificate, "Speak TLS with this certificate chain (PEM)")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
+  app.add_option("--tls-key", options.tls_key, "The certificate's private key (PEM)")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
+  app.get_option("--tls-certificate")->needs("--tls-key");
+  app.get_option("--tls-key")->needs("--tls-certificate");
+  const auto add_names = [&](const char* name, std::vector<std::string>& target, const char* kind, const char* help) {
+    app.add_option(name, target, help)->type_name(kind)->expected(1)->take_all();
+  };
+  add_names("--allow-origin", access.allowed_origins, "ORIGIN",
+            "A page from elsewhere that may use the API (CORS) and open streams; repeatable");
+  add_names("--allow-host", access.allowed_hosts, "NAME",
+            "A name this server goes by, for requests without tokens that a proxy forwards; repeatable");
+  const auto number = [](const std::string& text) { return parse_number(text, 0.0, 1e6); };
+  add_parsed(app, "--max-request-rate", access.requests_per_second, number, "N",
+             "Requests a second of one client; 0: no limit", "100");
+  add_parsed(app, "--request-burst", access.request_burst, number, "N", "Requests of one client at once", "400");
+}
+
 }  // namespace
 
 void add_serve_options(CLI::App& app, ServeOptions& options) {
@@ -45,15 +86,17 @@ void add_serve_options(CLI::App& app, ServeOptions& options) {
   app.add_option("--host", options.host, "The address to listen on")->capture_default_str();
   add_integer(app, "--port", options.port, 0, 65535, "The port to listen on; 0: any free one");
   app.add_option("--base-path", options.base_path, "The prefix that a proxy forwards")->type_name("/PATH");
-  app.add_option("--allow-origin", options.allowed_origins, "A page from elsewhere that may open streams; repeatable")
-      ->type_name("ORIGIN")
-      ->expected(1)
-      ->take_all();
   app.add_option("--web-client", options.web_client_dir, "Serve the viewer from this folder, not from the binary")
       ->check(CLI::ExistingDirectory);
   add_integer(app, "--quality", options.quality, 1, 100, "JPEG quality while the picture moves");
   add_device_options(app, options.device, options.tracer);
   add_settings_options(app, options.settings);
+  add_parsed(
+      app, "--drain-delay", options.drain_delay_s,
+      [](const std::string& text) { return parse_number(text, 0.0, 3600.0); }, "SECONDS",
+      "Told to stop, serve on for so long while not ready, so that a balancer notices", "0");
+  app.option_defaults()->group("Access");
+  add_access_options(app, options);
   app.option_defaults()->group("Limits");
   add_limit_options(app, options.limits);
 }

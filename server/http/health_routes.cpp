@@ -4,17 +4,17 @@
 namespace lightwell {
 
 void add_health_routes(http::RouteTable& table, const Services& services) {
-  table.add({"GET", "/healthz", http::Effort::kQuick, 0, {}, [](const http::Request&) {
+  table.add({"GET", "/healthz", Scope::kPublic, http::Effort::kQuick, 0, {}, [](const http::Request&) {
                return http::json_response(200, {{"status", "ok"}});
              }});
-  table.add({"GET", "/readyz", http::Effort::kQuick, 0, {}, [&services](const http::Request&) {
-               if (services.draining)
+  table.add({"GET", "/readyz", Scope::kPublic, http::Effort::kQuick, 0, {}, [&services](const http::Request&) {
+               if (services.leaving)
                  return http::problem_response(protocol::make_problem(503, "the server is stopping"));
                if (!services.render_loop.is_ready())
                  return http::problem_response(protocol::make_problem(503, "the shaders are being compiled"));
                return http::json_response(200, {{"status", "ready"}});
              }});
-  table.add({"GET", "/v1/openapi.json", http::Effort::kQuick, 0, {}, [](const http::Request&) {
+  table.add({"GET", "/v1/openapi.json", Scope::kPublic, http::Effort::kQuick, 0, {}, [](const http::Request&) {
                return http::Response{200, "application/json", std::string(protocol::openapi_document()), {}};
              }});
 }

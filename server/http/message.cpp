@@ -33,12 +33,14 @@ Response problem_response(const protocol::Problem& problem) {
 
 Response refusal_response(const net::Refusal& refusal) {
   Response response = problem_response(protocol::make_problem(refusal.status, refusal.detail));
-  for (const auto& field : refusal.fields)
-    if (field.first != "Retry-After") response.headers.push_back(field);
+  for (const auto& field : refusal.fields) {
+    std::erase_if(response.headers, [&](const auto& known) { return known.first == field.first; });
+    response.headers.push_back(field);
+  }
   return response;
 }
 
-std::string wire_format(const Response& response, bool keep_alive) {
+std::string wire_format(const Response& response, bool keep_alive, const Fields& more) {
   std::string text = "HTTP/1.1 " + std::to_string(response.status) + " ";
   text += protocol::status_phrase(response.status);
   text += "\r\n";
@@ -47,13 +49,14 @@ std::string wire_format(const Response& response, bool keep_alive) {
   };
   for (const auto& [name, value] : common_headers()) add(name, value);
   for (const auto& [name, value] : response.headers) add(name, value);
-  add("Content-Type", response.content_type);
-  add("Content-Length", std::to_string(response.body.size()));
+  for (const auto& [name, value] : more) add(name, value);
+  if (!response.content_type.empty()) add("Content-Type", response.content_type);
+  if (response.status != 204) add("Content-Length", std::to_string(response.body.size()));
   if (!keep_alive) add("Connection", "close");
   return text + "\r\n" + response.body;
 }
 
-std::vector<std::pair<std::string, std::string>> common_headers() {
+Fields common_headers() {
   return {{"Date", http_date()},
           {"X-Content-Type-Options", "nosniff"},
           {"Referrer-Policy", "no-referrer"},

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "protocol/codec.h"
-#include "server/net/request_head.h"
+#include "server/net/application.h"
 
 namespace lightwell::http {
 
@@ -21,11 +21,15 @@ struct Request {
   std::shared_ptr<std::atomic<bool>> gone;  // the client has hung up
 };
 
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
 struct Response {
   int status = 200;
   std::string content_type;
   std::string body;
-  std::vector<std::pair<std::string, std::string>> headers;
+  Fields headers;
+  std::shared_ptr<net::BodySource> rest = nullptr;  // sent in place of `body`
+  std::uint64_t rest_bytes = 0;                     // how long that is; 0: chunks, written as such, until it ends
 };
 
 Response json_response(int status, const nlohmann::json& value);
@@ -33,10 +37,10 @@ Response problem_response(const protocol::Problem& problem);
 /// A refusal of the connection layer as a problem.
 Response refusal_response(const net::Refusal& refusal);
 
-/// The response as it goes over the wire, with the fields every response has.
-std::string wire_format(const Response& response, bool keep_alive);
+/// The response as it goes over the wire, with the fields every response has and `more`.
+std::string wire_format(const Response& response, bool keep_alive, const Fields& more = {});
 
 /// Fields that every response has, whoever writes it.
-std::vector<std::pair<std::string, std::string>> common_headers();
+Fields common_headers();
 
 }  // namespace lightwell::http

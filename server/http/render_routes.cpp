@@ -37,11 +37,11 @@ Order make_order(const StagedScene& stage, PlacedCamera camera, double time_s, g
 
 /// The scene of a render request with its edits.
 Decoded<std::shared_ptr<const StagedScene>> edited_scene(const protocol::RenderRequest& request,
-                                                         const SceneStore& scenes) {
-  std::shared_ptr<const StagedScene> stage = scenes.find(request.scene);
+                                                         const Services& services) {
+  std::shared_ptr<const StagedScene> stage = services.scenes.find(request.scene);
   if (!stage) return no_such_scene(request.scene, 422, "/scene");
   if (request.edits.empty()) return stage;
-  Decoded<Scene> scene = edited(*stage->scene(), request.edits);
+  Decoded<Scene> scene = edited(*stage->scene(), request.edits, services.options.limits);
   if (!scene) return scene.problem();
   return std::shared_ptr<const StagedScene>(std::make_shared<StagedScene>(std::move(scene).value()));
 }
@@ -55,7 +55,7 @@ Decoded<Order> order_of(const protocol::RenderRequest& request, const Services& 
         422, "a picture may have at most " + std::to_string(limits.max_spp_frames) + " frames", "/spp_frames");
   const auto settings = with_spec(services.options.settings, request.settings, size_px, limits, "/settings");
   if (!settings) return settings.problem();
-  const auto stage = edited_scene(request, services.scenes);
+  const auto stage = edited_scene(request, services);
   if (!stage) return stage.problem();
   const float aspect_ratio = static_cast<float>(size_px.x) / static_cast<float>(size_px.y);
   auto camera = (*stage)->place(request.camera, request.time_s, aspect_ratio);
@@ -116,10 +116,11 @@ Response get_frame(const Services& services, const Request& request) {
 
 void add_render_routes(http::RouteTable& table, const Services& services) {
   using enum http::Effort;
-  table.add({"POST", "/v1/render", kLong, kMaxJsonBytes, {"application/json"}, [&](const Request& request) {
-               return post_render(services, request);
-             }});
-  table.add({"GET", "/v1/sessions/{id}/frame", kLong, 0, {}, [&](const Request& request) {
+  table.add(
+      {"POST", "/v1/render", Scope::kDrive, kLong, kMaxJsonBytes, {"application/json"}, [&](const Request& request) {
+         return post_render(services, request);
+       }});
+  table.add({"GET", "/v1/sessions/{id}/frame", Scope::kView, kLong, 0, {}, [&](const Request& request) {
                return get_frame(services, request);
              }});
 }

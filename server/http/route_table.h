@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "server/access/scope.h"
 #include "server/http/message.h"
 
 namespace lightwell::http {
@@ -19,7 +20,8 @@ enum class Effort { kQuick, kLong };
 
 struct Route {
   std::string method;
-  std::string path;  // "/v1/scenes/{name}": a name in braces stands for one segment
+  std::string path;             // "/v1/scenes/{name}": a name in braces stands for one segment
+  Scope scope = Scope::kAdmin;  // what a client's token must allow
   Effort effort = Effort::kQuick;
   std::uint64_t max_body_bytes = 0;
   std::vector<std::string> content_types;  // that a body may have; empty: no body is taken

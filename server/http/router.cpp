@@ -3,6 +3,8 @@
 #include <httplib.h>
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 namespace lightwell::http {
 namespace {
 
@@ -89,33 +91,40 @@ std::string pattern_of(std::string_view path_template) {
   return pattern;
 }
 
-/// RFC 9110, 8.6: 204 has no Content-Length, and 304 none but that of the file.
-std::string without_length_of_nothing(std::string response) {
-  const std::string_view status = std::string_view(response).substr(0, response.find("\r\n"));
-  const bool nothing = status.starts_with("HTTP/1.1 204") || status.starts_with("HTTP/1.1 304");
-  constexpr std::string_view kField = "Content-Length: 0\r\n";
-  const auto at = nothing ? response.find(kField) : std::string::npos;
-  if (at != std::string::npos) response.erase(at, kField.size());
-  return response;
+constexpr std::string_view kNoLength = "Content-Length: 0\r\n";
+
+/// RFC 9110, 8.6: 204 has no Content-Length, and 304 none but that of the file. A body that is sent as it is made has
+/// its own, or none.
+std::string with_true_length(std::string response, const Response& meant) {
+  const auto at = response.find(kNoLength);
+  if (at == std::string::npos) return response;
+  if (meant.status == 204 || meant.status == 304) return response.erase(at, kNoLength.size());
+  if (!meant.rest) return response;
+  const std::string framing = meant.rest_bytes > 0 ? "Content-Length: " + std::to_string(meant.rest_bytes) + "\r\n"
+                                                   : std::string("Transfer-Encoding: chunked\r\n");
+  return response.replace(at, kNoLength.size(), framing);
 }
 
-/// What cpp-httplib's request has no room for, while one is being answered on this thread.
-thread_local const net::Request* current_request = nullptr;
+/// What cpp-httplib's request and response have no room for, while a request is answered on this thread.
+struct Current {
+  const net::Request* request = nullptr;
+  Response meant;  // without its body
+};
+thread_local Current current;
 
 }  // namespace
 
 struct Router::State : httplib::Server {
-  explicit State(const RouteTable& table) {
+  State(const RouteTable& table, MoreFields fields) : more_fields(std::move(fields)) {
     set_keep_alive_timeout(60);
     set_keep_alive_max_count(1'000'000);
     for (const Route& route : table.routes()) add(route);
-    set_exception_handler([](const httplib::Request& request, httplib::Response& response, std::exception_ptr failure) {
-      answer_exception(request, response, failure);
-    });
+    set_exception_handler([this](const httplib::Request& request, httplib::Response& response,
+                                 std::exception_ptr failure) { answer_exception(request, response, failure); });
   }
 
   void add(const Route& route) {
-    const auto handler = [&route](const httplib::Request& request, httplib::Response& response) {
+    const auto handler = [this, &route](const httplib::Request& request, httplib::Response& response) {
       fill(response, route.handler(request_of(request)));
     };
     const std::string pattern = pattern_of(route.path);
@@ -135,23 +144,26 @@ struct Router::State : httplib::Server {
     Request result;
     for (std::size_t i = 1; i < request.matches.size(); ++i) result.path_parameters.push_back(request.matches[i]);
     result.query.assign(request.params.begin(), request.params.end());
-    result.body = current_request->body;
-    result.if_none_match = current_request->head.field("if-none-match");
-    result.gone = current_request->gone;
+    result.body = current.request->body;
+    result.if_none_match = current.request->head.field("if-none-match");
+    result.gone = current.request->gone;
     return result;
   }
 
-  static void fill(httplib::Response& out, Response response) {
+  void fill(httplib::Response& out, Response response) const {
     out.status = response.status;
     for (const auto& [name, value] : common_headers()) out.set_header(name, value);
     for (const auto& [name, value] : response.headers) out.set_header(name, value);
-    if (response.content_type.empty()) return;
-    out.set_header("Content-Type", response.content_type);
-    out.body = std::move(response.body);
+    for (const auto& [name, value] : more_fields(current.request->head)) out.set_header(name, value);
+    if (!response.content_type.empty()) {
+      out.set_header("Content-Type", response.content_type);
+      out.body = std::move(response.body);
+    }
+    current.meant = std::move(response);
   }
 
-  static void answer_exception(const httplib::Request& request, httplib::Response& response,
-                               std::exception_ptr failure) {
+  void answer_exception(const httplib::Request& request, httplib::Response& response,
+                        std::exception_ptr failure) const {
     try {
       std::rethrow_exception(failure);
     } catch (const std::exception& error) {
@@ -163,24 +175,29 @@ struct Router::State : httplib::Server {
     fill(response, problem_response(protocol::make_problem(500, "the server failed to answer this request")));
   }
 
-  std::string respond(const net::Request& request) {
+  net::Answer respond(const net::Request& request) {
     MemoryStream stream(canonical_head(request), request.peer);
     bool closed = false;
-    current_request = &request;
+    current = {&request, {}};
     process_request(stream, !request.keep_alive, closed, nullptr);
-    current_request = nullptr;
-    return without_length_of_nothing(stream.take_output());
+    const Current done = std::exchange(current, Current());
+    const bool head_only = request.head.method == "HEAD";
+    return {with_true_length(stream.take_output(), done.meant), head_only ? nullptr : done.meant.rest};
   }
+
+  const MoreFields more_fields;
 };
 
-Router::Router(const RouteTable& table) : state_(std::make_unique<State>(table)) {}
+Router::Router(const RouteTable& table, MoreFields more_fields)
+    : state_(std::make_unique<State>(table, std::move(more_fields))) {}
 
 Router::~Router() = default;
 
-std::string Router::respond(net::Request request) {
-  std::string response = state_->respond(request);
-  if (!response.empty()) return response;
-  return wire_format(problem_response(protocol::make_problem(500, "the server failed to answer this request")), false);
+net::Answer Router::respond(net::Request request) {
+  net::Answer answer = state_->respond(request);
+  if (!answer.bytes.empty()) return answer;
+  const auto problem = protocol::make_problem(500, "the server failed to answer this request");
+  return {wire_format(problem_response(problem), false), nullptr};
 }
 
 }  // namespace lightwell::http

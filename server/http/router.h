@@ -2,6 +2,7 @@
 // layer has not checked: it is given a head written anew from what was understood, and the body beside it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -13,13 +14,15 @@ namespace lightwell::http {
 /// Thread-safe once made. Needs a request for which `RouteTable::find` gave a route.
 class Router {
  public:
+  /// Fields that the answers to a request have besides those of every answer.
+  using MoreFields = std::function<Fields(const net::RequestHead&)>;
+
   /// `table` outlives the router.
-  explicit Router(const RouteTable& table);
+  Router(const RouteTable& table, MoreFields more_fields);
   ~Router();
 
-  /// Long work is done on the calling thread. Gives the whole response in bytes; an exception of a handler is a 500
-  /// that tells nothing of it.
-  std::string respond(net::Request request);
+  /// Long work is done on the calling thread. An exception of a handler is a 500 that tells nothing of it.
+  net::Answer respond(net::Request request);
 
  private:
   struct State;

@@ -53,19 +53,19 @@ Response delete_session(const Services& services, const std::string& id) {
 void add_session_routes(http::RouteTable& table, const Services& services) {
   using enum http::Effort;
   const std::vector<std::string> json{"application/json"};
-  table.add({"POST", "/v1/sessions", kQuick, kMaxJsonBytes, json,
+  table.add({"POST", "/v1/sessions", Scope::kDrive, kQuick, kMaxJsonBytes, json,
              [&](const Request& request) { return create_session(services, request.body); }});
-  table.add({"GET", "/v1/sessions/{id}", kQuick, 0, {}, [&](const Request& request) {
+  table.add({"GET", "/v1/sessions/{id}", Scope::kView, kQuick, 0, {}, [&](const Request& request) {
                return get_session(services, request.path_parameters[0]);
              }});
-  table.add({"PATCH", "/v1/sessions/{id}", kQuick, kMaxJsonBytes, json, [&](const Request& request) {
+  table.add({"PATCH", "/v1/sessions/{id}", Scope::kDrive, kQuick, kMaxJsonBytes, json, [&](const Request& request) {
                return patch_session(services, request.path_parameters[0], request.body);
              }});
   // Handshakes never come this far: the service admits them by itself.
-  table.add({"GET", "/v1/sessions/{id}/stream", kQuick, 0, {}, [](const Request&) {
+  table.add({"GET", "/v1/sessions/{id}/stream", Scope::kView, kQuick, 0, {}, [](const Request&) {
                return http::problem_response(protocol::make_problem(426, "a stream is a WebSocket"));
              }});
-  table.add({"DELETE", "/v1/sessions/{id}", kQuick, 0, {}, [&](const Request& request) {
+  table.add({"DELETE", "/v1/sessions/{id}", Scope::kDrive, kQuick, 0, {}, [&](const Request& request) {
                return delete_session(services, request.path_parameters[0]);
              }});
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,6 +26,24 @@ struct Request {
   Peer peer;
   bool keep_alive = true;                   // false: the answer must say "Connection: close"
   std::shared_ptr<std::atomic<bool>> gone;  // set once the client has closed its side: long work may stop
+};
+
+/// The rest of an answer, made while it is sent: a file that is large, events as they happen. Asked on an I/O thread.
+class BodySource {
+ public:
+  virtual ~BodySource() = default;
+  /// The bytes that come next, as they go over the wire; empty: nothing yet; none: the end. Asked again when it has
+  /// been woken, and every few seconds. Must not block for long.
+  virtual std::optional<std::string> next() = 0;
+  /// Called once, before the first `next`. `wake` may be called from any thread at any time, whether or not anyone
+  /// still listens.
+  virtual void set_waker(std::function<void()> wake) = 0;
+};
+
+/// A response in bytes, and what follows them, if anything.
+struct Answer {
+  std::string bytes;
+  std::shared_ptr<BodySource> rest;
 };
 
 /// One WebSocket message to send, or the end of the conversation.
@@ -85,11 +104,11 @@ class Application {
   virtual ~Application() = default;
   /// Decides on a request by its head, before any of its body is read. On an I/O thread: must not block.
   virtual Admission admit(const RequestHead& head, const Peer& peer) = 0;
-  /// Answers an admitted request: `done` gets the whole response in bytes, exactly once, from any thread. Called on an
-  /// I/O thread: must not block.
-  virtual void answer(Request request, std::function<void(std::string)> done) = 0;
-  /// A refusal as a whole response in bytes.
-  virtual std::string refusal_response(const Refusal& refusal, bool keep_alive) = 0;
+  /// Answers an admitted request: `done` gets the response exactly once, from any thread. Called on an I/O thread: must
+  /// not block.
+  virtual void answer(Request request, std::function<void(Answer)> done) = 0;
+  /// A refusal as a whole response in bytes. `head`: of the request refused; null if it was not understood.
+  virtual std::string refusal_response(const Refusal& refusal, bool keep_alive, const RequestHead* head) = 0;
 };
 
 }  // namespace lightwell::net

@@ -3,4 +3,5 @@
 
 // <utility> before Asio: its 1.74 forgets it.
 #include <boost/asio/impl/src.hpp>
+#include <boost/asio/ssl/impl/src.hpp>
 #include <boost/beast/src.hpp>

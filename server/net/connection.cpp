@@ -3,6 +3,8 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 // <utility> before Asio: its 1.74 forgets it.
@@ -11,8 +13,11 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/ssl/error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
 
 #include "server/net/body_decoder.h"
 #include "server/net/web_socket.h"
@@ -28,12 +33,20 @@ constexpr std::size_t kReadBytes = 16 * 1024;
 constexpr std::size_t kLargeReadBytes = 256 * 1024;  // while a large body arrives
 constexpr std::size_t kMaxLingerBytes = 1 << 20;
 constexpr auto kLinger = std::chrono::seconds(2);
+constexpr auto kBodyPulse = std::chrono::seconds(5);  // between questions to a body that has nothing yet
+constexpr auto kLateHead = std::chrono::seconds(1);   // for the request of one who connects while the server drains
 
 /// What the connection does after a request.
 enum class After { kNextRequest, kClose, kGone };
 
 Refusal busy(std::string detail) {
   return {503, std::move(detail), {{"Retry-After", "1"}}};
+}
+
+Refusal too_slow(const char* part, std::chrono::milliseconds limit) {
+  const auto seconds = std::chrono::ceil<std::chrono::seconds>(limit).count();
+  return {
+      408, std::string("the request's ") + part + " did not arrive in time (" + std::to_string(seconds) + " s)", {}};
 }
 
 /// Gives bytes of a budget back when it goes.
@@ -64,7 +77,10 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       : shared_(std::move(shared)),
         strand_(stream.get_executor()),
         stream_(std::move(stream)),
-        peer_(std::move(peer)) {}
+        peer_(std::move(peer)),
+        patience_(strand_),
+        draining_(shared_->connections.draining()),
+        came_late_(draining_) {}
 
   ~Connection() { shared_->connections.remove(this); }
 
@@ -81,8 +97,14 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   /// Where the answer of a worker is left for the strand. Outlives both.
   struct Exchange {
     explicit Exchange(const Strand& strand) : answered(strand, steady_clock::time_point::max()) {}
-    asio::steady_timer answered;  // cancelled by the answer
-    std::string response;
+    void signal() {
+      woken = true;
+      answered.cancel();
+    }
+
+    asio::steady_timer answered;  // never fires while the answer is waited for: cancelled by `signal`
+    bool woken = false;
+    std::optional<Answer> answer;
   };
 
   const Strand& executor() const { return strand_; }
@@ -90,14 +112,40 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   auto& lowest() { return boost::beast::get_lowest_layer(stream_); }
 
   asio::awaitable<void> run(std::shared_ptr<Connection> self) {
-    After after = After::kNextRequest;
+    After after = co_await shake_hands() ? After::kNextRequest : After::kGone;
     while (after == After::kNextRequest) after = co_await serve_one();
     if (after == After::kClose) co_await linger();
     self.reset();
   }
 
+  /// False if the other side does not speak TLS where it must.
+  asio::awaitable<bool> shake_hands() {
+    if constexpr (std::is_same_v<Stream, TlsStream>) {
+      error_code error;
+      lowest().expires_after(shared_->options.head_timeout);
+      co_await stream_.async_handshake(asio::ssl::stream_base::server,
+                                       asio::redirect_error(asio::use_awaitable, error));
+      lowest().expires_never();
+      if (!error) co_return true;
+      if (ERR_GET_REASON(static_cast<unsigned long>(error.value())) == SSL_R_HTTP_REQUEST) co_await refuse_plain_http();
+      co_return false;
+    }
+    co_return true;
+  }
+
+  /// Whoever took the port for one without TLS is told so in words it understands.
+  asio::awaitable<void> refuse_plain_http() {
+    const Refusal refusal{400, "this port speaks TLS: use https", {}};
+    const std::string response = shared_->application->refusal_response(refusal, false, nullptr);
+    error_code ignored;
+    lowest().expires_after(kLinger);
+    co_await asio::async_write(lowest(), asio::buffer(response), asio::redirect_error(asio::use_awaitable, ignored));
+    co_await linger();
+  }
+
   asio::awaitable<void> refuse_at_once(std::shared_ptr<Connection> self) {
-    std::string response = shared_->application->refusal_response(busy("too many connections are open"), false);
+    std::string response =
+        shared_->application->refusal_response(busy("too many connections are open"), false, nullptr);
     co_await write(std::move(response));
     co_await linger();
     self.reset();
@@ -106,6 +154,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   void drain() {
     draining_ = true;
     if (idle_) lowest().close();
+    if (exchange_) exchange_->signal();  // a body that never ends asks whether it should
   }
 
   /// One request and its answer.
@@ -133,6 +182,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   asio::awaitable<bool> read_head(std::size_t& head_bytes, Refusal& refusal) {
     auto deadline =
         steady_clock::now() + (buffer_.empty() ? shared_->options.idle_timeout : shared_->options.head_timeout);
+    if (came_late_) deadline = steady_clock::now() + kLateHead;
     for (std::size_t scanned = 0;;) {
       const HeadScan scan = find_head_end(buffer_, scanned);
       head_bytes = scan.head_bytes;
@@ -147,10 +197,11 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       }
       scanned = buffer_.size();
       idle_ = buffer_.empty();
-      if (idle_ && draining_) co_return false;
+      if (idle_ && draining_ && !came_late_) co_return false;
       const bool first = buffer_.empty();
       const bool arrived = co_await read_some(kReadBytes, deadline);
       idle_ = false;
+      if (!arrived && timed_out_ && !first) refusal = too_slow("head", shared_->options.head_timeout);
       if (!arrived) co_return false;
       if (first) deadline = steady_clock::now() + shared_->options.head_timeout;
     }
@@ -171,7 +222,9 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       if (decoder.done()) break;
       const std::size_t room = decoder.size() > kLargeReadBytes ? kLargeReadBytes : kReadBytes;
       const auto deadline = transfer_deadline(shared_->options, start, decoder.size());
-      if (!co_await read_some(room, deadline)) co_return After::kGone;
+      if (co_await read_some(room, deadline)) continue;
+      if (!timed_out_) co_return After::kGone;
+      co_return co_await refuse(too_slow("body", shared_->options.stall_timeout));
     }
     const bool keep_alive = head.keep_alive && !draining_;
     Request request{std::move(head), decoder.take_body(), peer_, keep_alive, nullptr};
@@ -183,32 +236,63 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     auto gone = std::make_shared<std::atomic<bool>>(false);
     request.gone = gone;
     auto exchange = std::make_shared<Exchange>(executor());
-    shared_->application->answer(std::move(request), [self = this->shared_from_this(), exchange](std::string response) {
-      asio::post(self->executor(), [exchange, response = std::move(response)]() mutable {
-        exchange->response = std::move(response);
-        exchange->answered.cancel();
+    shared_->application->answer(std::move(request), [self = this->shared_from_this(), exchange](Answer answer) {
+      asio::post(self->executor(), [exchange, answer = std::move(answer)]() mutable {
+        exchange->answer = std::move(answer);
+        exchange->signal();
       });
     });
-    watch_for_hang_up(gone);
+    watch_for_hang_up(gone, exchange);
     error_code ignored;
-    co_await exchange->answered.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    while (!exchange->answer)
+      co_await exchange->answered.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
     socket().cancel(ignored);  // the watch
-    co_return co_await write(exchange->response);
+    if (!co_await write(std::move(exchange->answer->bytes))) co_return false;
+    if (!exchange->answer->rest) co_return true;
+    exchange_ = exchange;
+    const bool sent = co_await write_rest(*exchange->answer->rest, gone, exchange);
+    exchange_.reset();
+    co_return sent;
+  }
+
+  asio::awaitable<bool> write_rest(BodySource& rest, std::shared_ptr<std::atomic<bool>> gone,
+                                   std::shared_ptr<Exchange> exchange) {
+    rest.set_waker([executor = executor(), exchange] { asio::post(executor, [exchange] { exchange->signal(); }); });
+    watch_for_hang_up(gone, exchange);
+    bool sent = true;
+    while (sent && !*gone) {
+      exchange->woken = false;
+      std::optional<std::string> piece = rest.next();
+      if (!piece) break;
+      if (!piece->empty()) {
+        sent = co_await write(std::move(*piece));
+        continue;
+      }
+      error_code ignored;
+      exchange->answered.expires_after(kBodyPulse);
+      if (!exchange->woken) co_await exchange->answered.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    }
+    error_code ignored;
+    socket().cancel(ignored);  // the watch
+    co_return sent && !*gone;
   }
 
   /// Tells the worker when the client has closed its side while it waits for the answer.
-  void watch_for_hang_up(std::shared_ptr<std::atomic<bool>> gone) {
-    socket().async_wait(asio::ip::tcp::socket::wait_read, [self = this->shared_from_this(), gone](error_code error) {
+  void watch_for_hang_up(std::shared_ptr<std::atomic<bool>> gone, std::shared_ptr<Exchange> exchange) {
+    const auto seen = [self = this->shared_from_this(), gone, exchange](error_code error) {
       if (error) return;
       char byte = 0;
-      if (::recv(self->socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) *gone = true;
-    });
+      if (::recv(self->socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0) return;
+      *gone = true;
+      exchange->signal();
+    };
+    socket().async_wait(asio::ip::tcp::socket::wait_read, seen);
   }
 
   /// Answers with a problem. The connection can go on only if the request has no body that is still to come.
   asio::awaitable<After> refuse(Refusal refusal, const RequestHead* head = nullptr) {
     const bool keep_alive = head && head->keep_alive && head->framing == Framing::kNone && !draining_;
-    std::string response = shared_->application->refusal_response(refusal, keep_alive);
+    std::string response = shared_->application->refusal_response(refusal, keep_alive, head);
     if (head && head->method == "HEAD") response.erase(std::min(response.find("\r\n\r\n") + 4, response.size()));
     if (!co_await write(std::move(response))) co_return After::kGone;
     co_return keep_alive ? After::kNextRequest : After::kClose;
@@ -217,12 +301,21 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   asio::awaitable<bool> read_some(std::size_t room, steady_clock::time_point deadline) {
     const std::size_t old_size = buffer_.size();
     buffer_.resize(old_size + room);
-    lowest().expires_at(deadline);
+    timed_out_ = false;
+    patience_.expires_at(deadline);
+    reading_ = true;
+    patience_.async_wait([self = this->shared_from_this(), deadline](error_code error) {
+      error_code ignored;
+      if (error || !self->reading_ || self->patience_.expiry() != deadline) return;
+      self->timed_out_ = true;  // cancelled, not closed: the answer can still be sent
+      self->socket().cancel(ignored);
+    });
     error_code error;
     const std::size_t count = co_await stream_.async_read_some(asio::buffer(buffer_.data() + old_size, room),
                                                                asio::redirect_error(asio::use_awaitable, error));
+    reading_ = false;
+    patience_.cancel();
     buffer_.resize(old_size + count);
-    lowest().expires_never();
     co_return !error && count > 0;
   }
 
@@ -243,11 +336,19 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   /// might never see the answer.
   asio::awaitable<void> linger() {
     error_code ignored;
+    if constexpr (std::is_same_v<Stream, TlsStream>) {
+      lowest().expires_after(kLinger);
+      co_await stream_.async_shutdown(asio::redirect_error(asio::use_awaitable, ignored));
+    }
     socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
     const auto deadline = steady_clock::now() + kLinger;
-    for (std::size_t read = 0; read < kMaxLingerBytes; read += buffer_.size()) {
-      buffer_.clear();
-      if (!co_await read_some(kReadBytes, deadline)) break;
+    std::size_t count = 0;
+    buffer_.resize(kReadBytes);
+    for (std::size_t read = 0; read < kMaxLingerBytes; read += count) {
+      lowest().expires_at(deadline);
+      count =
+          co_await lowest().async_read_some(asio::buffer(buffer_), asio::redirect_error(asio::use_awaitable, ignored));
+      if (ignored || count == 0) break;
     }
   }
 
@@ -255,9 +356,14 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   Strand strand_;
   Stream stream_;  // moved away once it has become a WebSocket
   Peer peer_;
-  std::string buffer_;  // what has arrived and is not consumed
-  bool idle_ = false;   // waits for the first byte of a request
+  std::string buffer_;           // what has arrived and is not consumed
+  asio::steady_timer patience_;  // with a peer that sends nothing
+  bool reading_ = false;
+  bool timed_out_ = false;  // it ended the last read
+  bool idle_ = false;       // waits for the first byte of a request
   bool draining_ = false;
+  const bool came_late_;                // when the server drained already: one request, if it comes soon
+  std::shared_ptr<Exchange> exchange_;  // while a body is sent as it is made
 };
 
 }  // namespace
@@ -270,13 +376,8 @@ bool ByteBudget::take(std::uint64_t bytes) {
 }
 
 void ConnectionSet::add(const void* connection, std::function<void()> drain) {
-  std::unique_lock lock(mutex_);
-  const bool at_once = draining_;
-  const auto& added = drains_[connection] = std::move(drain);
-  if (!at_once) return;
-  const std::function<void()> call = added;
-  lock.unlock();
-  call();
+  std::lock_guard lock(mutex_);
+  if (!draining_) drains_[connection] = std::move(drain);
 }
 
 void ConnectionSet::remove(const void* connection) {
@@ -318,6 +419,10 @@ steady_clock::time_point transfer_deadline(const ServerOptions& options, steady_
 }
 
 void serve_connection(TcpStream stream, Peer peer, std::shared_ptr<Shared> shared) {
+  if (shared->tls) {
+    TlsStream tls(std::move(stream), *shared->tls);
+    return std::make_shared<Connection<TlsStream>>(std::move(tls), std::move(peer), std::move(shared))->start();
+  }
   std::make_shared<Connection<TcpStream>>(std::move(stream), std::move(peer), std::move(shared))->start();
 }
 

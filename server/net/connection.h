@@ -3,11 +3,14 @@
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 
 #include "server/net/server.h"
@@ -15,8 +18,9 @@
 namespace lightwell::net {
 
 using Strand = boost::asio::strand<boost::asio::io_context::executor_type>;
-/// Plain TCP. Everything that reads and writes is a template over the stream, so that TLS can stand in its place.
+/// Plain TCP, or TLS over it. Everything that reads and writes is a template over the stream.
 using TcpStream = boost::beast::basic_stream<boost::asio::ip::tcp, Strand>;
+using TlsStream = boost::beast::ssl_stream<TcpStream>;
 
 /// A number of bytes shared by many takers.
 class ByteBudget {
@@ -33,7 +37,7 @@ class ByteBudget {
 /// The connections that are open, so that they can be told to end and waited for.
 class ConnectionSet {
  public:
-  /// `drain` is called from any thread, at most once; at once if draining has begun.
+  /// `drain` is called from any thread, at most once. One that comes while the others are drained is not waited for.
   void add(const void* connection, std::function<void()> drain);
   void remove(const void* connection);
   int size() const;
@@ -53,7 +57,8 @@ struct Shared {
   explicit Shared(const ServerOptions& server_options)
       : options(server_options), bodies(server_options.max_bodies_bytes) {}
 
-  Application* application = nullptr;  // set before the first connection
+  Application* application = nullptr;            // set before the first connection
+  std::optional<boost::asio::ssl::context> tls;  // set before the first connection, if TLS is spoken
   const ServerOptions options;
   ByteBudget bodies;
   ConnectionSet connections;
@@ -65,7 +70,7 @@ std::chrono::steady_clock::time_point transfer_deadline(const ServerOptions& opt
                                                         std::chrono::steady_clock::time_point start,
                                                         std::uint64_t bytes);
 
-/// Serves an accepted connection on its own strand until it ends.
+/// Serves an accepted connection on its own strand until it ends. With `Shared::tls` it speaks TLS, and nothing else.
 void serve_connection(TcpStream stream, Peer peer, std::shared_ptr<Shared> shared);
 
 /// Answers 503 and closes: there are too many connections.

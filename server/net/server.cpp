@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <future>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -32,6 +33,20 @@ void raise_file_limit() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/// TLS 1.2 and 1.3 with what OpenSSL takes for good ciphers.
+asio::ssl::context tls_context(const ServerOptions& options) {
+  asio::ssl::context context(asio::ssl::context::tls_server);
+  context.set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_sslv2 |
+                      asio::ssl::context::no_sslv3 | asio::ssl::context::no_tlsv1 | asio::ssl::context::no_tlsv1_1 |
+                      SSL_OP_NO_RENEGOTIATION);
+  error_code error;
+  context.use_certificate_chain_file(options.tls_certificate, error);
+  if (error) throw std::runtime_error("the TLS certificate " + options.tls_certificate + ": " + error.message());
+  context.use_private_key_file(options.tls_key, asio::ssl::context::pem, error);
+  if (error) throw std::runtime_error("the TLS key " + options.tls_key + ": " + error.message());
+  return context;
+}
+
 }  // namespace
 
 struct Server::State {
@@ -46,6 +61,9 @@ struct Server::State {
     const auto found = resolver.resolve(options.host, std::to_string(options.port), tcp::resolver::passive, error);
     if (error || found.empty()) throw std::runtime_error("cannot listen on " + where + ": no such address");
     const tcp::endpoint endpoint = found.begin()->endpoint();
+    if (options.loopback_only && !endpoint.address().is_loopback())
+      throw std::runtime_error("cannot listen on " + where +
+                               ": other machines reach this address, and no token is asked for (--tokens FILE)");
     acceptor.open(endpoint.protocol(), error);
     if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor.bind(endpoint, error);
@@ -93,6 +111,7 @@ struct Server::State {
 
 Server::Server(const ServerOptions& options) : state_(std::make_unique<State>(options)) {
   raise_file_limit();
+  if (!options.tls_certificate.empty()) state_->shared->tls.emplace(tls_context(options));
   state_->listen();
 }
 
@@ -127,13 +146,17 @@ int Server::connections() const {
 }
 
 bool Server::drain(std::chrono::milliseconds limit) {
-  asio::post(state_->strand, [state = state_.get()] {
+  state_->shared->connections.drain_all();
+  const bool all_ended = state_->shared->connections.wait_until_empty(limit);
+  std::promise<void> closed;
+  asio::post(state_->strand, [state = state_.get(), &closed] {
     error_code ignored;
     state->acceptor.close(ignored);
     state->retry.cancel();
+    closed.set_value();
   });
-  state_->shared->connections.drain_all();
-  return state_->shared->connections.wait_until_empty(limit);
+  closed.get_future().wait();
+  return all_ended;
 }
 
 }  // namespace lightwell::net

@@ -15,6 +15,9 @@ namespace lightwell::net {
 struct ServerOptions {
   std::string host = "127.0.0.1";  // a name or an address
   int port = 0;                    // 0: any free port
+  bool loopback_only = true;       // refuses to listen on an address that other machines reach
+  std::string tls_certificate;     // a PEM file with the certificate and its chain; empty: no TLS
+  std::string tls_key;             // a PEM file with its private key
   int io_threads = 2;
   int max_connections = 4096;  // beyond them a connection is answered with 503 and closed
   HeadLimits head;
@@ -43,8 +46,8 @@ class Server {
   std::string host_in_url() const;
   int connections() const;
 
-  /// Accepts no more, closes what is idle, lets requests being served end; true when all connections have ended in
-  /// time.
+  /// Closes what is idle and lets requests being served end; true when all connections have ended in time. Until then
+  /// new ones may still ask one thing each, such as how the server does; after it none are accepted.
   bool drain(std::chrono::milliseconds limit);
 
   /// Ends the I/O threads: the application is not called any more, and answers it still gives go nowhere.

@@ -11,6 +11,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
 namespace lightwell::net {
@@ -61,11 +62,10 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
 
   asio::awaitable<void> run(const RequestHead& head, bool early_bytes) {
     const bool open = !early_bytes && co_await accept(head);
-    if (open) {
-      admission_.handler->opened(this->shared_from_this());
-      may_send_ = true;
-      asio::co_spawn(strand_, write_messages(this->shared_from_this()), asio::detached);
-      co_await read_messages();
+    try {
+      if (open) co_await converse();
+    } catch (const std::exception&) {  // out of memory, say: the end of this conversation alone
+      beast::get_lowest_layer(stream_).close();
     }
     closed_ = true;
     woken_.cancel();
@@ -89,6 +89,13 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
     error_code error;
     co_await stream_.async_accept(request, asio::redirect_error(asio::use_awaitable, error));
     co_return !error;
+  }
+
+  asio::awaitable<void> converse() {
+    admission_.handler->opened(this->shared_from_this());
+    may_send_ = true;
+    asio::co_spawn(strand_, write_messages(this->shared_from_this()), asio::detached);
+    co_await read_messages();
   }
 
   asio::awaitable<void> read_messages() {
@@ -165,6 +172,13 @@ asio::awaitable<void> serve_web_socket(TcpStream stream, const RequestHead& head
                                        std::shared_ptr<Shared> shared, bool early_bytes) {
   auto connection =
       std::make_shared<WebSocketConnection<TcpStream>>(std::move(stream), std::move(admission), std::move(shared));
+  co_await connection->run(head, early_bytes);
+}
+
+asio::awaitable<void> serve_web_socket(TlsStream stream, const RequestHead& head, WebSocketAdmission admission,
+                                       std::shared_ptr<Shared> shared, bool early_bytes) {
+  auto connection =
+      std::make_shared<WebSocketConnection<TlsStream>>(std::move(stream), std::move(admission), std::move(shared));
   co_await connection->run(head, early_bytes);
 }
 

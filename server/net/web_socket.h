@@ -14,5 +14,7 @@ namespace lightwell::net {
 /// handshake was answered, which no honest client does.
 boost::asio::awaitable<void> serve_web_socket(TcpStream stream, const RequestHead& head, WebSocketAdmission admission,
                                               std::shared_ptr<Shared> shared, bool early_bytes);
+boost::asio::awaitable<void> serve_web_socket(TlsStream stream, const RequestHead& head, WebSocketAdmission admission,
+                                              std::shared_ptr<Shared> shared, bool early_bytes);
 
 }  // namespace lightwell::net

@@ -99,6 +99,8 @@ protocol::Decoded<SceneStore::Stored> SceneStore::upload(const std::string& name
   }
   LoadLimits load_limits;
   load_limits.max_file_bytes = limits_.max_upload_bytes;
+  load_limits.max_triangles = limits_.max_triangles;
+  load_limits.max_texture_bytes = limits_.max_texture_bytes;
   Result<Scene> scene = load_glb(glb, load_limits);
   if (!scene) return problem_of(scene.error());
   auto stage = staged(std::move(scene).value(), name);

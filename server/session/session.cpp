@@ -62,6 +62,17 @@ void Session::end(protocol::CloseCode code, const std::string& reason, bool reco
   surroundings_.wake_render_loop();
 }
 
+void Session::scenes_changed() {
+  audience_.tell_change(kChangedScenes, 0, nullptr, 0);
+}
+
+protocol::StateUpdate Session::change_of(unsigned members) const {
+  const std::shared_ptr<const SessionState> state = this->state();
+  protocol::StateUpdate update = state_update(*state, members, state->clock.time_s(steady_clock::now()));
+  if (members & kChangedScenes) update.scenes = surroundings_.rules.scenes.entries();
+  return update;
+}
+
 void Session::touch() {
   std::lock_guard lock(state_mutex_);
   touched_ = steady_clock::now();
@@ -73,8 +84,8 @@ SteadyTime Session::idle_since() const {
   return touched_;
 }
 
-protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream() {
-  auto viewer = std::make_shared<Viewer>(shared_from_this());
+protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream(bool may_drive) {
+  auto viewer = std::make_shared<Viewer>(shared_from_this(), may_drive);
   const auto most = static_cast<std::size_t>(surroundings_.rules.limits.max_viewers_per_session);
   if (!audience_.join(viewer, most))
     return make_problem(503, "the session has " + std::to_string(most) + " viewers, as many as it may have");
@@ -85,8 +96,9 @@ protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream() {
 protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello, Viewer& viewer) {
   if (std::find(hello.codecs.begin(), hello.codecs.end(), "jpeg") == hello.codecs.end())
     return make_problem(422, "this server sends jpeg alone, which the client does not take", "/codecs");
-  if (hello.resume) audience_.end_resumed(*hello.resume);
-  if (hello.role == protocol::Role::kDriver) {
+  if (hello.resume) resume(*hello.resume);
+  const protocol::Role role = seat(hello.role, viewer);
+  if (role == protocol::Role::kDriver) {
     protocol::SessionPatch size;  // the picture fits the driver's window
     const int most = surroundings_.rules.limits.max_size_px;
     size.width = static_cast<std::uint16_t>(std::min<int>(hello.width, most));
@@ -98,8 +110,26 @@ protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello
   const std::shared_ptr<const SessionState> state = this->state();
   if (!state->moving()) audience_.show_latest(viewer, state->revision);
   protocol::Welcome answer = welcome(*state);
-  answer.role = hello.role;
+  answer.role = role;
   return answer;
+}
+
+/// The role that a viewer gets: one of a session's viewers drives, the first that asks and may.
+protocol::Role Session::seat(protocol::Role wanted, const Viewer& viewer) {
+  std::lock_guard lock(driver_mutex_);
+  const bool can = wanted == protocol::Role::kDriver && viewer.may_drive() && !driver_;
+  if (!can) return protocol::Role::kViewer;
+  driver_ = &viewer;
+  return protocol::Role::kDriver;
+}
+
+/// Who has the token of an earlier stream takes its place, and its role if it wants that.
+void Session::resume(const std::string& token) {
+  {
+    std::lock_guard lock(driver_mutex_);
+    if (driver_ && driver_->resume_token() == token) driver_ = nullptr;
+  }
+  audience_.end_resumed(token);
 }
 
 protocol::Welcome Session::welcome(const SessionState& state) const {
@@ -130,6 +160,10 @@ std::shared_ptr<const SessionState> Session::state() const {
 }
 
 void Session::leave(const Viewer& viewer) {
+  {
+    std::lock_guard lock(driver_mutex_);
+    if (driver_ == &viewer) driver_ = nullptr;
+  }
   audience_.leave(viewer);
   touch();
 }

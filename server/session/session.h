@@ -30,11 +30,15 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   /// All of `patch` or nothing.
   protocol::Decoded<protocol::Session> apply(const protocol::SessionPatch& patch);
 
-  /// A new stream's end, which belongs to the audience until its connection closes. Problem: 503 if there are too many.
-  protocol::Decoded<std::shared_ptr<Viewer>> open_stream();
+  /// A new stream's end, which belongs to the audience until its connection closes. `may_drive`: whether its client's
+  /// token lets it be a driver. Problem: 503 if there are too many.
+  protocol::Decoded<std::shared_ptr<Viewer>> open_stream(bool may_drive);
 
   /// Closes all streams; no pictures are made from here on.
   void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
+
+  /// Viewers are told which scenes there are now.
+  void scenes_changed();
 
   /// Someone has asked for it: it is not idle.
   void touch();
@@ -44,11 +48,12 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   // ViewerHost
   protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) override;
   std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) override;
-  std::shared_ptr<const SessionState> state() const override;
+  protocol::StateUpdate change_of(unsigned members) const override;
   void window_opened() override { surroundings_.wake_render_loop(); }
   void leave(const Viewer& viewer) override;
 
   // DirectedSession
+  std::shared_ptr<const SessionState> state() const override;
   Audience& audience() override { return audience_; }
   bool ended() const override { return ended_; }
   void wake_render_loop() override { surroundings_.wake_render_loop(); }
@@ -56,6 +61,8 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
  private:
   std::optional<protocol::Problem> change(const protocol::SessionPatch& patch, const Viewer* by, std::uint32_t seq);
   protocol::Welcome welcome(const SessionState& state) const;
+  protocol::Role seat(protocol::Role wanted, const Viewer& viewer);
+  void resume(const std::string& token);
 
   const std::string id_;
   const SessionSurroundings& surroundings_;
@@ -66,6 +73,9 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   mutable std::mutex state_mutex_;
   std::shared_ptr<const SessionState> state_;
   SteadyTime touched_;
+
+  std::mutex driver_mutex_;
+  const Viewer* driver_ = nullptr;  // who drives; it leaves before it goes
 };
 
 }  // namespace lightwell

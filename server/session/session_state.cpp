@@ -57,7 +57,7 @@ class Change {
 
   bool change_edits() {
     if (!patch_.edits || patch_.edits->empty()) return true;
-    Decoded<Scene> scene = edited(*state_.stage->scene(), *patch_.edits);
+    Decoded<Scene> scene = edited(*state_.stage->scene(), *patch_.edits, rules_.limits);
     if (!scene) return refuse(scene.problem());
     state_.stage = std::make_shared<const StagedScene>(std::move(scene).value());
     return true;
@@ -126,7 +126,7 @@ protocol::StateUpdate state_update(const SessionState& state, unsigned members, 
   const bool new_scene = (members & (kChangedScene | kChangedEdits)) != 0;
   if (members & kChangedScene) update.scene = state.scene_name;
   if (members & kChangedSettings) update.settings = spec_of(state.settings);
-  if (new_scene || (members & kChangedCamera)) {
+  if (members & (kChangedScene | kChangedCamera)) {
     update.camera = state.camera;
     update.view = view_at(state, time_s);
   }

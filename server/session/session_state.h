@@ -48,7 +48,8 @@ enum ChangedMembers : unsigned {
   kChangedSettings = 8,
   kChangedPlaying = 16,
   kChangedTime = 32,
-  kChangedSize = 64,
+  kChangedSize = 64,     // seen in the pictures themselves
+  kChangedScenes = 128,  // the list of scenes there are
 };
 
 /// What changes need to know.
@@ -66,7 +67,7 @@ protocol::Decoded<SessionState> make_session_state(const protocol::SessionReques
 protocol::Decoded<SessionState> changed(const SessionState& state, const protocol::SessionPatch& patch,
                                         const SessionRules& rules, SteadyTime now);
 
-/// What clients are told when `members` (ChangedMembers) of a session have changed.
+/// What clients are told when `members` (ChangedMembers) of a session have changed. The list of scenes is left out.
 protocol::StateUpdate state_update(const SessionState& state, unsigned members, double time_s);
 
 /// The camera in world space at a time, however it was asked for.

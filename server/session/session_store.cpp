@@ -61,9 +61,13 @@ void SessionStore::end_all(protocol::CloseCode code, const std::string& reason, 
   for (const auto& [id, session] : all) session->end(code, reason, reconnect);
 }
 
-int SessionStore::size() const {
-  std::lock_guard lock(mutex_);
-  return static_cast<int>(sessions_.size());
+void SessionStore::scenes_changed() const {
+  std::map<std::string, std::shared_ptr<Session>> all;
+  {
+    std::lock_guard lock(mutex_);
+    all = sessions_;
+  }
+  for (const auto& [id, session] : all) session->scenes_changed();
 }
 
 }  // namespace lightwell

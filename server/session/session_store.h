@@ -22,10 +22,12 @@ class SessionStore {
   /// False if there is none.
   bool end(const std::string& id);
 
+  /// Tells all viewers which scenes there are now.
+  void scenes_changed() const;
+
   /// Ends sessions that nobody has wanted for long, and streams whose clients do not keep up. Called every second.
   void keep_house(SteadyTime now);
   void end_all(protocol::CloseCode code, const std::string& reason, bool reconnect);
-  int size() const;
 
  private:
   const ServeLimits limits_;

@@ -82,12 +82,12 @@ void Director::shot_done(Result<Frame> frame) {
 void Director::encode(Frame frame) {
   auto shared = std::make_shared<const Frame>(std::move(frame));
   const std::uint64_t number = next_number_++;
-  const bool taken = encoders_.try_post([self = shared_from_this(), take = take_, shared, number] {
-    self->show(take, *shared, number);
+  // Counted down whatever becomes of the work: done, failed or dropped.
+  const std::shared_ptr<void> made(nullptr, [self = shared_from_this()](void*) {
     --self->in_the_making_;
     self->session_->wake_render_loop();
   });
-  if (!taken) --in_the_making_;
+  encoders_.try_post([this, made, take = take_, shared, number] { show(take, *shared, number); });
 }
 
 /// On an encoder's thread.

@@ -1,6 +1,7 @@
 #include "server/stream/viewer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "protocol/frame_header.h"
 #include "server/random_id.h"
@@ -30,8 +31,8 @@ double server_clock_ms() {
   return std::chrono::duration<double, std::milli>(steady_clock::now().time_since_epoch()).count();
 }
 
-Viewer::Viewer(std::shared_ptr<ViewerHost> host)
-    : host_(std::move(host)), resume_token_(random_id()), created_(steady_clock::now()) {}
+Viewer::Viewer(std::shared_ptr<ViewerHost> host, bool may_drive)
+    : host_(std::move(host)), may_drive_(may_drive), resume_token_(random_id()), created_(steady_clock::now()) {}
 
 // What the connection brings.
 
@@ -83,7 +84,7 @@ void Viewer::received(const protocol::Hello& hello) {
       return queue_end(protocol::CloseCode::kNotAllowed, welcome.problem().detail, false);
     }
     welcome->resume = resume_token_;
-    may_drive_ = welcome->role == protocol::Role::kDriver;
+    drives_ = welcome->role == protocol::Role::kDriver;
     placement_ = std::make_shared<const Placement>(Placement{welcome->view, welcome->lights});
     queue_text(*welcome);
     if (stage_ == Stage::kAwaitingHello) stage_ = Stage::kWatching;
@@ -93,7 +94,7 @@ void Viewer::received(const protocol::Hello& hello) {
 
 void Viewer::received(const protocol::Input& input) {
   std::optional<Problem> problem;
-  if (!may_drive_)
+  if (!drives_)
     problem = protocol::make_problem(403, "a viewer only watches: its inputs are not taken");
   else if (input.seq <= last_seq_)
     problem = protocol::make_problem(422, "seq does not ascend", "/seq");
@@ -145,9 +146,11 @@ void Viewer::state_changed(unsigned members, std::uint64_t revision, std::option
   if (seq) {
     applied_.push_back({revision, *seq});
     if (applied_.size() > kMostInputs) applied_.pop_front();
-    if (members == kChangedCamera) return;  // nobody knows it better than who moved it
-    changed_by_seq_ = seq;
+    members &= ~kChangedCamera;  // nobody knows it better than who moved it
   }
+  members &= ~kChangedSize;
+  if (members == 0) return;
+  if (seq) changed_by_seq_ = seq;
   changed_members_ |= members;
   wake();
 }
@@ -225,10 +228,7 @@ void Viewer::queue_end(protocol::CloseCode code, const std::string& reason, bool
 }
 
 std::string Viewer::take_state_update() {
-  const std::shared_ptr<const SessionState> state = host_->state();
-  const double time_s = state->clock.time_s(steady_clock::now());
-  const unsigned members = std::exchange(changed_members_, 0u);
-  protocol::StateUpdate update = state_update(*state, members, time_s);
+  protocol::StateUpdate update = host_->change_of(std::exchange(changed_members_, 0u));
   update.seq = std::exchange(changed_by_seq_, std::nullopt);
   return protocol::serialize(update);
 }

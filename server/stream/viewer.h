@@ -27,7 +27,8 @@ class ViewerHost {
   /// Answers a hello. A problem ends the stream.
   virtual protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) = 0;
   virtual std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) = 0;
-  virtual std::shared_ptr<const SessionState> state() const = 0;
+  /// What viewers are told when these members have changed.
+  virtual protocol::StateUpdate change_of(unsigned members) const = 0;
   /// The viewer can take a picture again.
   virtual void window_opened() = 0;
   virtual void leave(const Viewer& viewer) = 0;
@@ -35,7 +36,8 @@ class ViewerHost {
 
 class Viewer : public net::WebSocketHandler {
  public:
-  explicit Viewer(std::shared_ptr<ViewerHost> host);
+  /// `may_drive`: its client's token allows it.
+  Viewer(std::shared_ptr<ViewerHost> host, bool may_drive);
 
   // From the connection, one call at a time.
   void opened(std::shared_ptr<net::WebSocketLink> link) override;
@@ -57,6 +59,7 @@ class Viewer : public net::WebSocketHandler {
   /// Pictures that are on their way to the client, or wait to be.
   int pictures_on_the_way() const;
   bool watching() const;
+  bool may_drive() const { return may_drive_; }
   const std::string& resume_token() const { return resume_token_; }
 
   /// Ends the stream of a client that neither acknowledges nor reads, or never said hello.
@@ -91,13 +94,14 @@ class Viewer : public net::WebSocketHandler {
   void wake();
 
   const std::shared_ptr<ViewerHost> host_;
+  const bool may_drive_;
   const std::string resume_token_;
   const SteadyTime created_;
 
   mutable std::mutex mutex_;
   std::shared_ptr<net::WebSocketLink> link_;
   enum class Stage { kAwaitingHello, kWatching, kEnding, kClosed } stage_ = Stage::kAwaitingHello;
-  bool may_drive_ = false;
+  bool drives_ = false;
   std::deque<std::string> texts_;             // small and few: welcome, pongs, errors, bye
   std::optional<net::CloseMessage> closing_;  // after the texts
   SteadyTime ending_since_{};

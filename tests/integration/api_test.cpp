@@ -24,7 +24,7 @@ TEST_F(ApiTest, EveryAnswerHasTheSecurityFields) {
 
 TEST_F(ApiTest, AnswersHeadWithoutABody) {
   Line line(server_.port());
-  line.send("HEAD /v1/scenes HTTP/1.1\r\nHost: a\r\n\r\nHEAD /nothing HTTP/1.1\r\nHost: a\r\n\r\n");
+  line.send("HEAD /v1/scenes HTTP/1.1\r\nHost: localhost\r\n\r\nHEAD /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n");
   const Answer scenes = read_answer(line, true);
   EXPECT_EQ(scenes.status, 200);
   EXPECT_EQ(scenes.field("Content-Length"), std::to_string(ask("GET", "/v1/scenes").body.size()));
@@ -44,7 +44,7 @@ TEST_F(ApiTest, RefusesWhatIsNotThereAndWhatIsNotAllowed) {
   EXPECT_EQ(problem(ask("GET", "/healthz", "body"))["status"], 413);
   EXPECT_EQ(problem(ask("POST", "/v1/render", std::string(2'000'000, ' ')))["status"], 413);
   Line line(server_.port());
-  line.send("POST /v1/render HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\n\r\n");
+  line.send("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n\r\n");
   EXPECT_EQ(read_answer(line).status, 411);
 }
 
@@ -273,7 +273,7 @@ TEST_F(ApiTest, ARenderIsCalledOffWhenItsClientLeaves) {
   {
     Line line(server_.port());
     const std::string body = R"({"scene":"cornell","width":8,"height":8,"spp_frames":4000})";
-    line.send("POST /v1/render HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: " +
+    line.send("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
               std::to_string(body.size()) + "\r\n\r\n" + body);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
@@ -289,7 +289,7 @@ TEST_F(ApiTest, QuickRequestsDoNotWaitBehindLongOnes) {
   for (int i = 0; i < 12; ++i) {
     const std::string body = R"({"scene":"cornell","width":8,"height":8,"spp_frames":100})";
     lines.emplace_back(server_.port())
-        .send("POST /v1/render HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: " +
+        .send("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
               std::to_string(body.size()) + "\r\n\r\n" + body);
   }
   const auto start = std::chrono::steady_clock::now();

@@ -52,6 +52,31 @@ class Echo : public WebSocketHandler {
   std::deque<Outgoing> waiting_;
 };
 
+/// Six bytes, two at a time, as they are let go.
+class Drip : public BodySource {
+ public:
+  std::optional<std::string> next() override {
+    std::lock_guard lock(mutex_);
+    if (sent_ == 3) return {};
+    if (sent_ == ready_) return std::string();
+    return std::string(2, static_cast<char>('a' + sent_++));
+  }
+  void set_waker(std::function<void()> wake) override {
+    std::lock_guard lock(mutex_);
+    wake_ = std::move(wake);
+  }
+  void let_go() {
+    std::lock_guard lock(mutex_);
+    ++ready_;
+    if (wake_) wake_();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::function<void()> wake_;
+  int ready_ = 0, sent_ = 0;
+};
+
 /// Answers with what was asked: "/echo" with the body, "/slow" after a while, "/refused" never.
 class TestApplication : public Application {
  public:
@@ -65,7 +90,7 @@ class TestApplication : public Application {
     return HttpAdmission{1'000'000};
   }
 
-  void answer(Request request, std::function<void(std::string)> done) override {
+  void answer(Request request, std::function<void(net::Answer)> done) override {
     std::lock_guard lock(mutex_);
     threads_.emplace_back([this, request = std::move(request), done = std::move(done)] {
       if (request.head.path == "/slow") std::this_thread::sleep_for(200ms);
@@ -73,15 +98,20 @@ class TestApplication : public Application {
         for (int i = 0; i < 500 && !*request.gone; ++i) std::this_thread::sleep_for(10ms);
         saw_hang_up = request.gone->load();
       }
-      done(response(200, request.head.method + " " + request.head.path + " " + request.body, request.keep_alive));
+      if (request.head.path == "/drip") {
+        drip = std::make_shared<Drip>();
+        return done({"HTTP/1.1 200 OK\r\nContent-Length: 6\r\n\r\n", drip});
+      }
+      done({response(200, request.head.method + " " + request.head.path + " " + request.body, request.keep_alive), {}});
     });
   }
 
-  std::string refusal_response(const Refusal& refusal, bool keep_alive) override {
+  std::string refusal_response(const Refusal& refusal, bool keep_alive, const RequestHead*) override {
     return response(refusal.status, refusal.detail, keep_alive);
   }
 
   std::atomic<bool> saw_hang_up = false;
+  std::shared_ptr<Drip> drip;
 
  private:
   std::mutex mutex_;
@@ -194,7 +224,8 @@ TEST_F(ConnectionTest, ClosesWhatStalls) {
   half_body.send("POST /x HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nhel");
   const auto start = std::chrono::steady_clock::now();
   for (Line* line : {&half_head, &half_body, &idle}) {
-    EXPECT_EQ(line->receive_all(), "");
+    const std::string answer = line->receive_all();
+    EXPECT_TRUE(line == &idle ? answer.empty() : answer.starts_with("HTTP/1.1 408 ")) << answer;
     EXPECT_TRUE(line->closed());
   }
   EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
@@ -309,6 +340,53 @@ TEST_F(ConnectionTest, JoinsFragmentsAndAnswersPings) {
   const auto message = client.receive();
   ASSERT_TRUE(message);
   EXPECT_EQ(message->bytes, "hello");
+}
+
+TEST_F(ConnectionTest, SendsABodyAsItIsMade) {
+  Line line(port());
+  line.send("GET /drip HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_NE(line.receive_until("\r\n\r\n").find("Content-Length: 6"), std::string::npos);
+  EXPECT_EQ(line.receive(1, 50ms), "");
+  for (const char* piece : {"aa", "bb", "cc"}) {
+    application_.drip->let_go();
+    EXPECT_EQ(line.receive(2), piece);
+  }
+  line.send("GET /next HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(read_answer(line).body, "GET /next ");
+}
+
+TEST_F(ConnectionTest, ABodyEndsWhenItsReaderLeaves) {
+  {
+    Line line(port());
+    line.send("GET /drip HTTP/1.1\r\nHost: a\r\n\r\n");
+    line.receive_until("\r\n\r\n");
+  }
+  for (int i = 0; i < 100 && server_.connections() > 0; ++i) std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(server_.connections(), 0);
+}
+
+TEST(Loopback, IsTheOnlyPlaceWithoutLeave) {
+  ServerOptions options;
+  options.host = "0.0.0.0";
+  try {
+    const Server server(options);
+    FAIL() << "it listens";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("0.0.0.0:0: other machines reach this address"), std::string::npos);
+  }
+  options.loopback_only = false;
+  EXPECT_GT(Server(options).port(), 0);
+}
+
+TEST(Tls, NamesAFileThatIsNoCertificate) {
+  ServerOptions options;
+  options.tls_certificate = options.tls_key = "/dev/null";
+  try {
+    const Server server(options);
+    FAIL() << "it listens";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/dev/null"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace lightwell::test {
 struct FakeStudio {
   std::atomic<int> render_ms = 1;
   std::atomic<bool> failing = false;
+  std::atomic<bool> throwing = false;
   std::atomic<int> views = 0;  // alive
   std::atomic<int> pictures = 0;
 
@@ -39,6 +41,7 @@ class FakeSource : public PictureSource {
   Result<Frame> render(const Scene&, const FrameRequest& request, RenderView& render_view) override {
     auto& view = static_cast<View&>(render_view);
     std::this_thread::sleep_for(std::chrono::milliseconds(studio_->render_ms));
+    if (studio_->throwing) throw std::runtime_error("the fake source was told to throw");
     if (studio_->failing) return Error{ErrorKind::kUnsupported, "scene", "the fake source was told to fail"};
     ++studio_->pictures;
     {

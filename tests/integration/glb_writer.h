@@ -27,16 +27,21 @@ inline std::string glb_of_json(std::string text, std::string binary = {}) {
   return file + chunks;
 }
 
-/// One triangle of one metre.
-inline std::string triangle_glb() {
+/// One triangle of one metre, `times` over in the same place.
+inline std::string triangle_glb(int times = 1) {
   std::string binary;
   const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   binary.append(reinterpret_cast<const char*>(positions), sizeof(positions));
+  std::string roots = "0", nodes = R"({"name":"only","mesh":0})";
+  for (int i = 1; i < times; ++i) {
+    roots += "," + std::to_string(i);
+    nodes += R"(,{"mesh":0})";
+  }
   return glb_of_json(
-      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"only","mesh":0}],)"
-      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
-      R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})",
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes + "]," +
+          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+          R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
+          R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]})",
       binary);
 }
 

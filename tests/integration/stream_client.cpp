@@ -50,6 +50,7 @@ int WebSocketClient::open(int port, const std::string& target, const Options& op
   state_->stream.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
     if (!options.subprotocol.empty()) request.set(http::field::sec_websocket_protocol, options.subprotocol);
     if (!options.origin.empty()) request.set(http::field::origin, options.origin);
+    if (!options.authorization.empty()) request.set(http::field::authorization, options.authorization);
   }));
   state_->stream.read_message_max(std::size_t{256} << 20);
   websocket::response_type response;

@@ -18,7 +18,8 @@ class WebSocketClient {
   struct Options {
     std::string subprotocol = "lightwell.v1";  // empty: none is asked for
     std::string origin;
-    int receive_buffer_bytes = 0;  // of the socket; 0: as the system likes
+    int receive_buffer_bytes = 0;    // of the socket; 0: as the system likes
+    std::string authorization = {};  // the field's value; empty: none
   };
 
   WebSocketClient();

@@ -1,4 +1,5 @@
 // The frame stream: handshake, window, newest first, refinement, and clients that misbehave.
+#include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
 namespace lightwell::test {
@@ -235,6 +236,13 @@ TEST_F(StreamTest, TellsAllViewersWhatChanged) {
   EXPECT_EQ(error["seq"], 1);
 }
 
+TEST_F(StreamTest, TellsViewersWhichScenesThereAre) {
+  StreamClient client(server_.port(), make_session());
+  client.hello();
+  EXPECT_EQ(ask("PUT", "/v1/scenes/mine", triangle_glb(), "model/gltf-binary").status, 201);
+  EXPECT_EQ(client.next_text("state")["scenes"].back()["name"], "mine");
+}
+
 TEST_F(StreamTest, EncodesOncePerPictureAndSharesTheBytes) {
   const std::string session = make_session();
   StreamClient first(server_.port(), session), second(server_.port(), session);
@@ -323,6 +331,8 @@ TEST_F(StreamTest, ClosesAClientThatAcknowledgesNothing) {
   good.hello({{"role", "viewer"}});
   EXPECT_TRUE(good.frame_where([](const FrameHeader& frame) { return frame.is_final; }));
   EXPECT_EQ(deaf.close_code(15s), 4002);
+  for (int i = 0; i < 100 && json::parse(ask("GET", "/v1/sessions/" + session).body)["viewers"] != 1; ++i)
+    std::this_thread::sleep_for(10ms);
   EXPECT_EQ(json::parse(ask("GET", "/v1/sessions/" + session).body)["viewers"], 1);
 }
 
@@ -372,7 +382,7 @@ TEST_F(StreamTest, SessionsShareTheDeviceFairly) {
   for (int i = 0; i < 4; ++i) {
     const std::string body = R"({"scene":"cornell","width":8,"height":8,"spp_frames":1000})";
     jobs.emplace_back(server_.port())
-        .send("POST /v1/render HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: " +
+        .send("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
               std::to_string(body.size()) + "\r\n\r\n" + body);
   }
   for (std::atomic<int>& count : frames) count = 0;
@@ -395,7 +405,7 @@ TEST(Drain, TellsViewersToReconnectAndEndsRequestsInFlight) {
   studio->render_ms = 300;
   Line render(server.port());
   const std::string body = R"({"scene":"cornell","width":8,"height":8})";
-  render.send("POST /v1/render HTTP/1.1\r\nHost: a\r\nContent-Type: application/json\r\nContent-Length: " +
+  render.send("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
               std::to_string(body.size()) + "\r\n\r\n" + body);
   std::this_thread::sleep_for(50ms);
   std::thread drainer([&] { EXPECT_TRUE(server.drain(10s)); });

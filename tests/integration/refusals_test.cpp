@@ -1,0 +1,222 @@
+// Every refusal that the OpenAPI document shows is one that the server gives, in those words.
+#include <regex>
+
+#include "protocol/openapi_document.h"
+#include "tests/integration/glb_writer.h"
+#include "tests/integration/server_fixture.h"
+
+namespace lightwell::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+const char* const kGlb = "model/gltf-binary";
+
+/// A server of its own for a few questions.
+class Asked {
+ public:
+  explicit Asked(ServeOptions options = test_options(), MakePictureSource source = nullptr)
+      : studio(std::make_shared<FakeStudio>()), server(options, source ? std::move(source) : fake_source(studio)) {}
+
+  Asked& until_ready() {
+    server.ready().wait();
+    while (ask("GET", "/v1/scenes").status == 503) std::this_thread::sleep_for(milliseconds(5));
+    return *this;
+  }
+  Answer ask(const std::string& method, const std::string& target, const std::string& body = {},
+             const std::string& type = "application/json", const std::string& fields = {}) const {
+    return test::ask(server.port(), method, target, body, type, fields);
+  }
+  Answer render(const json& change) const {
+    json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}};
+    request.update(change);
+    return ask("POST", "/v1/render", request.dump());
+  }
+  Answer raw(const std::string& text) const {
+    Line line(server.port());
+    line.send(text);
+    return read_answer(line);
+  }
+  std::string session() const {
+    return json::parse(ask("POST", "/v1/sessions", R"({"scene":"cornell","width":8,"height":8})").body)["id"];
+  }
+  static std::string handshake(const std::string& session) {
+    return "GET /v1/sessions/" + session +
+           "/stream HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+  }
+
+  std::shared_ptr<FakeStudio> studio;
+  RunningServer server;
+};
+
+using Answers = std::map<std::string, Answer>;  // by the example's name
+
+void ask_what_is_malformed(Answers& answers) {
+  Asked asked;
+  asked.until_ready();
+  answers["not_json"] = asked.ask("POST", "/v1/render", "{\"scene\":cornell}");
+  answers["member_twice"] = asked.ask("POST", "/v1/render", R"({"scene":"cornell","settings":{"seed":1,"seed":2}})");
+  answers["too_deep"] = asked.ask("POST", "/v1/render", R"({"scene":"cornell","edits":)" + std::string(40, '['));
+  answers["length"] =
+      asked.raw("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n\r\n");
+  answers["body"] = asked.ask("POST", "/v1/render", std::string(2'000'000, ' '));
+  std::string values = R"({"scene":"cornell","edits":[{"op":"add","path":"/nodes/0/weights","value":[0)";
+  for (int i = 0; i < 200'000; ++i) values += ",0";
+  answers["values"] = asked.ask("POST", "/v1/render", values + "]}]}");
+  answers["no_body"] = asked.ask("GET", "/v1/scenes", "body");
+  answers["type"] = asked.ask("POST", "/v1/render", "{}", "text/plain");
+  answers["encoded"] = asked.ask("POST", "/v1/render", "{}", "application/json", "Content-Encoding: gzip\r\n");
+  answers["method"] = asked.ask("POST", "/v1/scenes", "{}");
+  answers["target"] = asked.ask("GET", "/" + std::string(5000, 'x'));
+  answers["expectation"] = asked.ask("GET", "/", {}, {}, "Expect: a-miracle\r\n");
+  std::string fields;
+  for (int i = 0; i < 100; ++i) fields += "X-" + std::to_string(i) + ": 1\r\n";
+  answers["fields"] = asked.ask("GET", "/", {}, {}, fields);
+  answers["encoding"] = asked.raw("POST /v1/render HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: gzip\r\n\r\n");
+  answers["version"] = asked.raw("GET / HTTP/2.0\r\nHost: localhost\r\n\r\n");
+  answers["misdirected"] = asked.raw("GET / HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n");
+  answers["forbidden"] =
+      asked.ask("POST", "/v1/sessions", "{}", "application/json", "Origin: https://elsewhere.example\r\n");
+  answers["timeout"] = asked.raw("GET / HT");
+}
+
+void ask_what_means_nothing(Answers& answers) {
+  Asked asked;
+  asked.until_ready();
+  answers["wrong_type"] = asked.render({{"width", "512"}});
+  answers["unknown_member"] = asked.render({{"settings", {{"sample", 1}}}});
+  answers["missing_member"] = asked.ask("POST", "/v1/render", "{}");
+  const json edit{{"op", "replace"}, {"path", "/nodes/99/translation"}, {"value", {0, 0, 0}}};
+  answers["edit"] = asked.render({{"edits", {edit}}});
+  answers["scene_file"] = asked.ask("PUT", "/v1/scenes/mine", triangle_glb().substr(0, 200), kGlb);
+  answers["scene_name"] = asked.ask("PUT", "/v1/scenes/My%20Room", triangle_glb(), kGlb);
+  answers["no_such_scene"] = asked.render({{"scene", "atrum"}});
+  answers["size"] = asked.render({{"width", 9000}});
+  answers["samples"] = asked.render({{"settings", {{"samples", 5000}}}});
+  answers["scene"] = asked.ask("GET", "/v1/scenes/atrum");
+  answers["session"] = asked.ask("GET", "/v1/sessions/3f9a0c51d2e84b76");
+  answers["path"] = asked.ask("GET", "/v2/render");
+  answers["builtin"] = asked.ask("PUT", "/v1/scenes/cornell", triangle_glb(), kGlb);
+  for (const char* name : {"a", "b", "c"}) asked.ask("PUT", std::string("/v1/scenes/") + name, triangle_glb(), kGlb);
+  answers["too_many"] = asked.ask("PUT", "/v1/scenes/d", triangle_glb(), kGlb);
+  asked.studio->throwing = true;
+  answers["internal"] = asked.render(json::object());
+  answers["upgrade"] = asked.ask("GET", "/v1/sessions/" + asked.session() + "/stream");
+}
+
+void ask_for_too_much(Answers& answers) {
+  ServeOptions options = test_options();
+  options.limits.max_triangles = 1;
+  options.limits.max_scene_bytes = 700;
+  options.limits.max_viewers_per_session = 1;
+  Asked asked(options);
+  asked.until_ready();
+  answers["triangles"] = asked.ask("PUT", "/v1/scenes/two", triangle_glb(2), kGlb);
+  asked.ask("PUT", "/v1/scenes/one", triangle_glb(), kGlb);
+  answers["scene_bytes"] = asked.ask("PUT", "/v1/scenes/more", triangle_glb(), kGlb);
+  const std::string session = asked.session();
+  Line first(asked.server.port());
+  first.send(Asked::handshake(session));
+  first.receive_until("\r\n\r\n");
+  answers["viewers"] = asked.raw(Asked::handshake(session));
+  for (int i = 1; i < options.limits.max_sessions; ++i) asked.session();
+  answers["sessions"] = asked.ask("POST", "/v1/sessions", R"({"scene":"cornell"})");
+}
+
+void ask_too_often(Answers& answers) {
+  ServeOptions options = test_options();
+  options.access.request_burst = 1;
+  Asked asked(options);
+  asked.ask("GET", "/");
+  answers["rate"] = asked.ask("GET", "/");
+}
+
+void ask_without_leave(Answers& answers) {
+  ServeOptions options = test_options();
+  ASSERT_TRUE(options.access.tokens.add("view-token-0123456789", Scope::kView));
+  Asked asked(options);
+  asked.until_ready();
+  answers["unauthorized"] = asked.ask("GET", "/v1/scenes");
+  answers["unknown_token"] = asked.ask("GET", "/v1/scenes", {}, {}, "Authorization: Bearer guess\r\n");
+  answers["scope"] =
+      asked.ask("POST", "/v1/sessions", "{}", "application/json", "Authorization: Bearer view-token-0123456789\r\n");
+}
+
+void ask_at_the_wrong_time(Answers& answers) {
+  std::promise<void> start;
+  const auto started = start.get_future().share();
+  const auto studio = std::make_shared<FakeStudio>();
+  const auto late_source = [started, studio]() -> std::unique_ptr<PictureSource> {
+    started.wait();
+    return std::make_unique<FakeSource>(studio);
+  };
+  Asked asked(test_options(), late_source);
+  answers["loading"] = asked.ask("GET", "/v1/scenes");
+  while (asked.ask("GET", "/v1/scenes").status == 503) std::this_thread::sleep_for(milliseconds(5));
+  answers["starting"] = asked.render(json::object());
+  start.set_value();
+  asked.server.ready().wait();
+
+  studio->render_ms = 50;
+  const std::string body = R"({"scene":"cornell","width":8,"height":8,"spp_frames":1000})";
+  const std::string request =
+      "POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
+      std::to_string(body.size()) + "\r\n\r\n" + body;
+  std::vector<Line> lines;
+  for (int i = 0; i < 80; ++i) lines.emplace_back(asked.server.port()).send(request);
+  std::this_thread::sleep_for(milliseconds(200));
+  answers["busy"] = asked.render(json::object());
+  std::thread drainer([&] { asked.server.drain(milliseconds(500)); });
+  std::this_thread::sleep_for(milliseconds(100));
+  answers["stopping"] = asked.ask("GET", "/v1/scenes");
+  drainer.join();
+}
+
+/// With every number and every quoted word replaced: what may differ from case to case.
+std::string shape_of(const std::string& detail) {
+  const std::string words = std::regex_replace(detail, std::regex("\"[^\"]*\""), "\"...\"");
+  return std::regex_replace(words, std::regex("[0-9]+"), "N");
+}
+
+/// All examples of problems in the document, by their names.
+std::map<std::string, json> documented() {
+  std::map<std::string, json> examples;
+  const auto collect = [&](const auto& self, const json& value) -> void {
+    if (!value.is_structured()) return;
+    if (value.is_object() && value.contains("application/problem+json")) {
+      for (const auto& [name, example] : value["application/problem+json"]["examples"].items())
+        EXPECT_TRUE(examples.emplace(name, example["value"]).second) << name << " twice";
+    }
+    for (const auto& member : value) self(self, member);
+  };
+  collect(collect, json::parse(protocol::openapi_document()));
+  return examples;
+}
+
+TEST(Refusals, AreThoseOfTheDocument) {
+  Answers answers;
+  for (const auto& ask_for : {ask_what_is_malformed, ask_what_means_nothing, ask_for_too_much, ask_too_often,
+                              ask_without_leave, ask_at_the_wrong_time})
+    ask_for(answers);
+  const auto examples = documented();
+  for (const auto& [name, example] : examples) {
+    ASSERT_TRUE(answers.contains(name)) << name << " is shown, and not asked for";
+    const json given = problem(answers[name]);
+    EXPECT_EQ(given["status"], example["status"]) << name;
+    EXPECT_EQ(given["title"], example["title"]) << name;
+    EXPECT_EQ(shape_of(given.value("detail", "")), shape_of(example["detail"])) << name;
+    EXPECT_EQ(given.contains("pointer"), example.contains("pointer")) << name << given;
+    const int status = example["status"];
+    if (status == 429 || status == 503) {
+      EXPECT_FALSE(answers[name].field("Retry-After").empty()) << name;
+    }
+    if (status == 401) {
+      EXPECT_FALSE(answers[name].field("WWW-Authenticate").empty()) << name;
+    }
+  }
+  for (const auto& [name, answer] : answers) EXPECT_TRUE(examples.contains(name)) << name << " is not in the document";
+}
+
+}  // namespace
+}  // namespace lightwell::test
