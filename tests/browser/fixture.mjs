@@ -17,9 +17,14 @@ export const kLaptop = { viewport: { width: 1280, height: 720 } };
 export const kPhone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 3, isMobile: true, hasTouch: true };
 
 export class Fixture {
+  /** @param {string[]} options of `lightwell serve` */
+  constructor(options = []) {
+    this.options = options;
+  }
+
   async start() {
     mkdirSync(screenshots, { recursive: true });
-    this.server = running_at ? { port: running_at, stop() {} } : await start_server(program);
+    this.server = running_at ? { port: running_at, stop() {} } : await start_server(program, this.options);
     this.line = await new Line(this.server.port).open();
     this.browser = await open_browser();
     this.viewer = await this.open(kDesktop);

@@ -17,11 +17,11 @@ export async function free_port() {
 
 /**
  * Starts `lightwell serve` and waits until it is ready to render.
- * @param {string} program @returns {Promise<{port: number, log: () => string, stop: () => Promise<void>}>}
+ * @param {string} program @param {string[]} options @returns {Promise<{port: number, log: () => string, stop: () => Promise<void>}>}
  */
-export async function start_server(program) {
+export async function start_server(program, options = []) {
   const port = await free_port();
-  const child = spawn(program, ["serve", "--port", String(port)], { stdio: ["ignore", "pipe", "pipe"] });
+  const child = spawn(program, ["serve", "--port", String(port), ...options], { stdio: ["ignore", "pipe", "pipe"] });
   let log = "";
   for (const stream of [child.stdout, child.stderr]) stream.on("data", (data) => (log += data));
   const stopped = once(child, "exit");

@@ -37,7 +37,7 @@ export class ViewerPage {
     for (;;) {
       const value = await read();
       if (test(value)) return value;
-      if (Date.now() > until_ms) assert.fail(`${what}: not within ${within_ms} ms; last seen ${JSON.stringify(value)}`);
+      if (Date.now() > until_ms) assert.fail(`${what}: not within ${within_ms} ms; last seen ${JSON.stringify(value)} errors ${this.errors.slice(-6).join(" | ")}`);
       await this.page.waitForTimeout(30);
     }
   }

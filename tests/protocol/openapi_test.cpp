@@ -65,6 +65,11 @@ TEST(OpenApi, EveryReferenceLeadsSomewhere) {
     EXPECT_TRUE(document().contains(Json::json_pointer(target.substr(1)))) << pointer << ": " << target;
     used.insert(target);
   });
+  for_each_object(document(), "", [&](const Json& object, const std::string&) {
+    if (!object.contains("security") || !object["security"].is_array()) return;
+    for (const Json& requirement : object["security"])
+      for (const auto& [name, scopes] : requirement.items()) used.insert("#/components/securitySchemes/" + name);
+  });
   for (const auto& [kind, components] : document()["components"].items())
     for (const auto& [name, component] : components.items())
       EXPECT_TRUE(used.contains("#/components/" + kind + '/' + name)) << name << " is used by nothing";
