@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "renderer/check.h"
+#include "renderer/methods/reference.h"
 #include "renderer/methods/thesis.h"
 #include "renderer/passes/bindings.glsl"
 #include "renderer/passes/brdf_table.h"
@@ -19,12 +20,34 @@ constexpr float kExposureSmoothing = 0.12f;
 
 class View : public RenderView {
  public:
-  View(gl::ShaderLibrary& shaders, gl::BufferUse buffers) : thesis(shaders, buffers), display(shaders) {}
-  ThesisMethod thesis;
+  View(gl::ShaderLibrary& shaders, gl::BufferUse buffers) : display(shaders), shaders_(shaders), buffers_(buffers) {}
+
+  // Made when first asked for: their images and shaders are many.
+  ThesisMethod& thesis() {
+    if (!thesis_) thesis_.emplace(shaders_, buffers_);
+    return *thesis_;
+  }
+  ReferenceMethod& reference() {
+    if (!reference_) reference_.emplace(shaders_, buffers_);
+    return *reference_;
+  }
+
   DisplayPass display;
   std::uint32_t accumulated = 0;
   bool exposed = false;
+
+ private:
+  gl::ShaderLibrary& shaders_;
+  gl::BufferUse buffers_;
+  std::optional<ThesisMethod> thesis_;
+  std::optional<ReferenceMethod> reference_;
 };
+
+bool traces_paths(const Settings& settings) {
+  const ViewKind view = settings.view;
+  return settings.method == Method::kReference &&
+         (view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect);
+}
 
 std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
   std::vector<Coverage> all;
@@ -117,7 +140,10 @@ void Renderer::State::read(const View& view, const Picture& picture, const Frame
 }
 
 Renderer::Renderer(const RendererOptions& options) : state_(std::make_unique<State>(options)) {
-  make_view();  // compiles every program, so that no frame does
+  if (!options.compile_ahead) return;
+  View view(state_->shaders, state_->buffers);
+  view.thesis();
+  view.reference();
 }
 
 Renderer::~Renderer() = default;
@@ -147,13 +173,14 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
     state_->tracer->update({pose.instances, coverage});
     view.accumulated = request.accumulate ? view.accumulated : 0;
-    state_->bind_frame(scene, request, pixel_jitter(view.accumulated));
+    const bool paths = traces_paths(request.settings);  // which have a jitter of their own
+    state_->bind_frame(scene, request, paths ? glm::vec2(0.0f) : pixel_jitter(view.accumulated));
     state_->timer.mark("scene");
 
     FrameContext context{
         state_->device_scene, pose,         request.settings, request.size_px, view.accumulated, request.accumulate,
         *state_->tracer,      state_->timer};
-    const Picture& picture = view.thesis.render(context);
+    const Picture& picture = paths ? view.reference().render(context, scene) : view.thesis().render(context);
     view.display.resize(request.size_px);
     view.display.measure_exposure(picture, view.exposed && view.accumulated == 0 ? kExposureSmoothing : 1.0f);
     view.exposed = true;

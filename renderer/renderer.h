@@ -22,6 +22,12 @@ enum class Method { kThesis, kRealtime, kReference };
 enum class Estimator { kCorrected, kLiteral };
 enum class ViewKind { kFinal, kDirect, kIndirect, kAlbedo, kNormal, kDepth, kOcclusionDistance };
 enum class ToneMap { kNeutral, kLinear };
+/// How `reference` finds lights that have a size: samples of the lights and rays that hit them, weighted together, or
+/// one of the two alone. All have the same mean.
+enum class LightStrategy { kBoth, kLights, kRays };
+
+/// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` only.
+constexpr int kUnlimitedBounces = 1 << 20;
 
 /// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if
 /// unknown.
@@ -29,16 +35,19 @@ std::optional<Method> method_from_name(std::string_view name);
 std::optional<Estimator> estimator_from_name(std::string_view name);
 std::optional<ViewKind> view_kind_from_name(std::string_view name);
 std::optional<ToneMap> tone_map_from_name(std::string_view name);
+std::optional<LightStrategy> light_strategy_from_name(std::string_view name);
 std::string_view name_of(Method method);
 std::string_view name_of(Estimator estimator);
 std::string_view name_of(ViewKind view);
 std::string_view name_of(ToneMap tone_map);
+std::string_view name_of(LightStrategy strategy);
 
-/// How a picture is made. Ranges are checked by `check_settings`.
+/// How a picture is made. Ranges are checked by `check_settings`. `reference` makes one path per pixel and frame and
+/// knows method, bounces, light_strategy, seed and what is displayed; its views of surfaces are those of `thesis`.
 struct Settings {
   Method method = Method::kThesis;
   int samples = 32;         // directions per pixel of the indirect map, 1..4096
-  int bounces = 1;          // 0: direct only; 1: first bounce; ... 64
+  int bounces = 1;          // 0: direct only; 1: first bounce; ... 64, or kUnlimitedBounces
   int indirect_size = 128;  // the indirect map's longer side in pixels, 8..4096
   Estimator estimator = Estimator::kCorrected;
   ViewKind view = ViewKind::kFinal;
@@ -50,6 +59,7 @@ struct Settings {
   int shadow_filter = 3;                // its box filter's width in pixels, odd, 1..15
   bool denoise = false;                 // edge-stopping filter over the indirect map (not in the thesis)
   bool multiple_scattering = false;     // light between microfacets is kept: rough surfaces lose no energy
+  LightStrategy light_strategy = LightStrategy::kBoth;
 };
 
 /// The first setting out of range, by its name on the command line; Done if all are good.
@@ -95,11 +105,13 @@ struct RendererOptions {
   std::string tracer;  // "" (compute on a GPU, else the native one if given), "embree" or "compute"
   /// Makes the native tracer; the core does not link it. Empty: there is none.
   std::function<std::unique_ptr<Tracer>()> make_native_tracer;
+  /// Compiles the methods' shaders at the start, so that no frame waits for them; else each when it is first used.
+  bool compile_ahead = true;
 };
 
 class Renderer {
  public:
-  /// Compiles all shaders. Throws gl::NoDevice, or std::runtime_error when a shader or the tracer's name is refused.
+  /// Throws gl::NoDevice, or std::runtime_error when a shader or the tracer's name is refused.
   explicit Renderer(const RendererOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;

@@ -22,6 +22,8 @@ constexpr Names<ViewKind, 7> kViews = {{{ViewKind::kFinal, "final"},
                                         {ViewKind::kNormal, "normal"},
                                         {ViewKind::kDepth, "depth"},
                                         {ViewKind::kOcclusionDistance, "occlusion-distance"}}};
+constexpr Names<LightStrategy, 3> kLightStrategies = {
+    {{LightStrategy::kBoth, "both"}, {LightStrategy::kLights, "lights"}, {LightStrategy::kRays, "rays"}}};
 constexpr Names<ToneMap, 2> kToneMaps = {{{ToneMap::kNeutral, "neutral"}, {ToneMap::kLinear, "linear"}}};
 
 template <class Value, std::size_t N>
@@ -58,6 +60,9 @@ std::optional<ViewKind> view_kind_from_name(std::string_view name) {
 std::optional<ToneMap> tone_map_from_name(std::string_view name) {
   return from_name(kToneMaps, name);
 }
+std::optional<LightStrategy> light_strategy_from_name(std::string_view name) {
+  return from_name(kLightStrategies, name);
+}
 std::string_view name_of(Method method) {
   return to_name(kMethods, method);
 }
@@ -71,11 +76,16 @@ std::string_view name_of(ToneMap tone_map) {
   return to_name(kToneMaps, tone_map);
 }
 
+std::string_view name_of(LightStrategy strategy) {
+  return to_name(kLightStrategies, strategy);
+}
+
 Status check_settings(const Settings& settings, glm::ivec2 size_px) {
+  const bool unlimited = settings.bounces == kUnlimitedBounces && settings.method == Method::kReference;
   const Status checks[] = {check_range("width", size_px.x, 1, 16384),
                            check_range("height", size_px.y, 1, 16384),
                            check_range("samples", settings.samples, 1, 4096),
-                           check_range("bounces", settings.bounces, 0, 64),
+                           check_range("bounces", unlimited ? 0 : settings.bounces, 0, 64),
                            check_range("indirect-size", settings.indirect_size, 8, 4096),
                            check_range("shadow-size", settings.shadow_size, 64, 4096),
                            check_range("shadow-filter", settings.shadow_filter, 1, 15)};
@@ -89,8 +99,8 @@ Status check_settings(const Settings& settings, glm::ivec2 size_px) {
     for (int i = 0; i < 3; ++i)
       if (!((*settings.background)[i] >= 0.0f && (*settings.background)[i] <= 1e6f))
         return invalid_input("background", "its components must be from 0 to 1e6");
-  if (settings.method != Method::kThesis)
-    return Error{ErrorKind::kUnsupported, "method", "this version has the method thesis alone"};
+  if (settings.method == Method::kRealtime)
+    return Error{ErrorKind::kUnsupported, "method", "this version has the methods thesis and reference"};
   return Done{};
 }
 

@@ -11,6 +11,18 @@ layout(std140, binding = BINDING_ENVIRONMENT) uniform EnvironmentBlock {
 layout(binding = UNIT_ENVIRONMENT) uniform sampler2D environment_image;  // latitude-longitude, row 0 the zenith
 #endif
 
+// Where a direction lies in the latitude-longitude picture, and the way back.
+vec2 environment_uv(vec3 direction_ws) {
+  const float longitude = atan(direction_ws.x, -direction_ws.z) + environment.zenith_radiance.w;
+  return vec2(longitude / (2.0 * kPi) + 0.5, acos(clamp(direction_ws.y, -1.0, 1.0)) / kPi);
+}
+
+vec3 environment_direction(float column_uv, float up) {
+  const float longitude = (column_uv - 0.5) * (2.0 * kPi) - environment.zenith_radiance.w;
+  const float sin_theta = sqrt(max(1.0 - up * up, 0.0));
+  return vec3(sin_theta * sin(longitude), up, -sin_theta * cos(longitude));
+}
+
 struct Sky {
   vec3 zenith_radiance, horizon_radiance, ground_radiance;
   float strength;
@@ -25,9 +37,7 @@ Sky load_sky() {
 vec3 sky_radiance(Sky sky, vec3 direction_ws) {
 #ifdef HAS_ENVIRONMENT_IMAGE
   if (environment.ground_radiance.w > 0.5) {
-    const float longitude = atan(direction_ws.x, -direction_ws.z) + environment.zenith_radiance.w;
-    const vec2 uv = vec2(longitude / (2.0 * kPi) + 0.5, acos(clamp(direction_ws.y, -1.0, 1.0)) / kPi);
-    return textureLod(environment_image, uv, 0.0).rgb * sky.strength;
+    return textureLod(environment_image, environment_uv(direction_ws), 0.0).rgb * sky.strength;
   }
 #endif
   const float up = direction_ws.y;

@@ -6,6 +6,7 @@ struct HitPoint {
   vec3 position_ws;
   vec3 geometric_normal_ws;  // unit, turned towards where the ray came from
   uint material_flags;
+  bool from_behind;          // the ray came from the back of the triangle, by its winding
 };
 
 HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
@@ -47,5 +48,6 @@ HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
   point.brdf = make_brdf(clamp(point.surface.base_color.rgb, 0.0, 1.0), clamp(point.surface.metallic, 0.0, 1.0),
                          point.surface.roughness, material.f0_dielectric, material.specular_factor);
   point.material_flags = material.flags;
+  point.from_behind = behind;
   return point;
 }

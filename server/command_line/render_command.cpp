@@ -153,7 +153,9 @@ ExitCode run_render(const RenderArguments& arguments) {
   report.scene_loaded();
   if (const Result<PlacedCamera> camera = camera_at(arguments, *scene, arguments.time_s); !camera)
     return report_usage(camera.error());
-  Renderer renderer({{arguments.device}, arguments.tracer, [] { return make_embree_tracer(); }});
+  RendererOptions options{{arguments.device}, arguments.tracer, [] { return make_embree_tracer(); }};
+  options.compile_ahead = false;
+  Renderer renderer(options);
   report.renderer_started(renderer);
   Pictures pictures{renderer, arguments, *scene, renderer.make_view(), report};
   if (const ExitCode code = pictures.render_all(); code != kDone) return code;

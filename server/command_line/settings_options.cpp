@@ -14,6 +14,13 @@ Result<int> parse_shadow_filter(const std::string& text) {
   return static_cast<int>(*width);
 }
 
+Result<int> parse_bounces(const std::string& text) {
+  if (text == "inf") return kUnlimitedBounces;
+  const Result<long long> bounces = parse_integer(text, 0, 64);
+  if (!bounces) return invalid_input("", "expected an integer from 0 to 64 or inf, not \"" + text + "\"");
+  return static_cast<int>(*bounces);
+}
+
 Result<std::optional<float>> parse_exposure(const std::string& text) {
   if (text == "auto") return std::optional<float>();
   const Result<double> stops = parse_number(text, -64.0, 64.0);
@@ -30,7 +37,9 @@ void add_transport_options(CLI::App& app, Settings& settings) {
   add_named(app, "--method", settings.method, {Method::kThesis, Method::kRealtime, Method::kReference},
             method_from_name, "How light is found");
   add_integer(app, "--samples", settings.samples, 1, 4096, "Directions per pixel of the indirect map");
-  add_integer(app, "--bounces", settings.bounces, 0, 64, "0: direct light only, 1: the first bounce, ...");
+  add_parsed(app, "--bounces", settings.bounces, parse_bounces, "N",
+             "0: direct light only, 1: the first bounce, ... 64; inf: no limit, with the method reference",
+             std::to_string(settings.bounces));
   add_integer(app, "--indirect-size", settings.indirect_size, 8, 4096,
               "The longer side of the map in which indirect light is found, in pixels");
   add_named(app, "--estimator", settings.estimator, {Estimator::kCorrected, Estimator::kLiteral}, estimator_from_name,
@@ -41,6 +50,9 @@ void add_transport_options(CLI::App& app, Settings& settings) {
   app.add_flag("--denoise,!--no-denoise", settings.denoise, "Smooth the indirect light within surfaces");
   app.add_flag("--multiple-scattering,!--no-multiple-scattering", settings.multiple_scattering,
                "Keep the light that bounces between the microfacets of rough surfaces");
+  add_named(app, "--light-strategy", settings.light_strategy,
+            {LightStrategy::kBoth, LightStrategy::kLights, LightStrategy::kRays}, light_strategy_from_name,
+            "How reference finds lights that have a size: by samples of them, by rays that hit them, or by both");
   add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
               "Start of the random sequence: the same seed gives the same picture");
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 
 #ifdef LIGHTWELL_WITH_EMBREE
 #include "renderer/tracing/embree/embree_tracer.h"
@@ -36,15 +37,9 @@ int SceneMaker::material(const Material& material) {
   return static_cast<int>(scene_.materials.size()) - 1;
 }
 
-void SceneMaker::quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int material) {
-  const glm::vec3 normal = glm::normalize(glm::cross(edge_u, edge_v));
-  Primitive primitive;
-  primitive.positions = {corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
-  primitive.normals.assign(4, normal);
-  primitive.tangents.assign(4, glm::vec4(glm::normalize(edge_u), 1.0f));
-  primitive.indices = {0, 1, 2, 0, 2, 3};
+void SceneMaker::add(Primitive primitive, int material) {
   primitive.material = material;
-  primitive.bounds_min = primitive.bounds_max = corner;
+  primitive.bounds_min = primitive.bounds_max = primitive.positions.front();
   for (const glm::vec3& p : primitive.positions) {
     primitive.bounds_min = glm::min(primitive.bounds_min, p);
     primitive.bounds_max = glm::max(primitive.bounds_max, p);
@@ -56,6 +51,72 @@ void SceneMaker::quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int 
   scene_.meshes.push_back(std::move(mesh));
   scene_.roots.push_back(static_cast<int>(scene_.nodes.size()));
   scene_.nodes.push_back(std::move(node));
+}
+
+void SceneMaker::quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int material, bool textured) {
+  Primitive primitive;
+  primitive.positions = {corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v};
+  primitive.normals.assign(4, glm::normalize(glm::cross(edge_u, edge_v)));
+  primitive.tangents.assign(4, glm::vec4(glm::normalize(edge_u), 1.0f));
+  primitive.indices = {0, 1, 2, 0, 2, 3};
+  if (textured) primitive.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  add(std::move(primitive), material);
+}
+
+void SceneMaker::triangles(const std::vector<glm::vec3>& positions, const std::vector<std::uint32_t>& indices,
+                           int material) {
+  Primitive primitive;
+  for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+    const glm::vec3 a = positions[indices[t]], b = positions[indices[t + 1]], c = positions[indices[t + 2]];
+    const glm::vec3 area_normal = glm::cross(b - a, c - a);
+    const float length = glm::length(area_normal);
+    for (const glm::vec3& p : {a, b, c}) {
+      primitive.indices.push_back(static_cast<std::uint32_t>(primitive.positions.size()));
+      primitive.positions.push_back(p);
+      primitive.normals.push_back(length > 0.0f ? area_normal / length : glm::vec3(0, 1, 0));
+      primitive.tangents.emplace_back(1.0f, 0.0f, 0.0f, 1.0f);
+    }
+  }
+  add(std::move(primitive), material);
+}
+
+void SceneMaker::disk(glm::vec3 center, glm::vec3 normal, float radius, int segments, int material) {
+  const glm::vec3 x =
+      glm::normalize(glm::cross(std::abs(normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), normal));
+  const glm::vec3 y = glm::cross(glm::normalize(normal), x);
+  std::vector<glm::vec3> positions{center};
+  std::vector<std::uint32_t> indices;
+  for (int i = 0; i < segments; ++i) {
+    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(segments);
+    positions.push_back(center + radius * (std::cos(angle) * x + std::sin(angle) * y));
+    const auto first = static_cast<std::uint32_t>(i + 1), next = static_cast<std::uint32_t>((i + 1) % segments + 1);
+    indices.insert(indices.end(), {0, first, next});
+  }
+  triangles(positions, indices, material);
+}
+
+void SceneMaker::sphere(glm::vec3 center, float radius, int segments, bool from_inside, int material) {
+  const int rings = segments / 2;
+  std::vector<glm::vec3> positions;
+  for (int ring = 0; ring <= rings; ++ring)
+    for (int i = 0; i < segments; ++i) {
+      const float theta = std::numbers::pi_v<float> * static_cast<float>(ring) / static_cast<float>(rings);
+      const float phi = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(segments);
+      positions.push_back(center + radius * glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                                      std::sin(theta) * std::sin(phi)));
+    }
+  std::vector<std::uint32_t> indices;
+  const auto triangle = [&](int a, int b, int c) {
+    for (const int corner : {a, from_inside ? c : b, from_inside ? b : c})
+      indices.push_back(static_cast<std::uint32_t>(corner));
+  };
+  for (int ring = 0; ring < rings; ++ring)
+    for (int i = 0; i < segments; ++i) {
+      const int a = ring * segments + i, b = ring * segments + (i + 1) % segments;
+      if (ring > 0) triangle(a, b, a + segments);
+      if (ring + 1 < rings) triangle(b, b + segments, a + segments);
+    }
+  triangles(positions, indices, material);
 }
 
 void SceneMaker::room(glm::vec3 low, glm::vec3 high, int material) {
@@ -109,6 +170,15 @@ PlacedCamera look_at(glm::vec3 eye, glm::vec3 target, float yfov) {
   camera.camera.yfov = yfov;
   camera.camera.znear = 0.01f;
   camera.world_from_view = glm::inverse(glm::lookAt(eye, target, up));
+  return camera;
+}
+
+PlacedCamera look_parallel(glm::vec3 eye, glm::vec3 target, float width_m) {
+  PlacedCamera camera = look_at(eye, target);
+  camera.camera.perspective = false;
+  camera.camera.xmag = camera.camera.ymag = 0.5f * width_m;
+  camera.camera.znear = 0.0f;
+  camera.camera.zfar = 100.0f;
   return camera;
 }
 

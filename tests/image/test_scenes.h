@@ -20,8 +20,14 @@ Material lambert(glm::vec3 albedo, glm::vec3 emission = glm::vec3(0.0f));
 class SceneMaker {
  public:
   int material(const Material& material);
-  /// A parallelogram with its front to cross(edge_u, edge_v).
-  void quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int material);
+  /// A parallelogram with its front to cross(edge_u, edge_v); `textured`: with the unit square as its uv.
+  void quad(glm::vec3 corner, glm::vec3 edge_u, glm::vec3 edge_v, int material, bool textured = false);
+  /// Triangles with the normals of their faces.
+  void triangles(const std::vector<glm::vec3>& positions, const std::vector<std::uint32_t>& indices, int material);
+  /// A disk of `segments` triangles with its front to `normal`.
+  void disk(glm::vec3 center, glm::vec3 normal, float radius, int segments, int material);
+  /// A sphere of flat faces, seen from inside or from outside; its corners lie at `radius`.
+  void sphere(glm::vec3 center, float radius, int segments, bool from_inside, int material);
   /// All six sides of a box, seen from inside.
   void room(glm::vec3 low, glm::vec3 high, int material);
   void directional(glm::vec3 direction, float lux);
@@ -31,12 +37,16 @@ class SceneMaker {
   Scene& scene() { return scene_; }
 
  private:
+  void add(Primitive primitive, int material);
   void add_light(const Light& light, glm::vec3 position, glm::vec3 direction);
   Scene scene_;
 };
 
 /// A camera at `eye` looking at `target`.
 PlacedCamera look_at(glm::vec3 eye, glm::vec3 target, float yfov = 0.6f);
+
+/// A parallel camera at `eye` that sees a square of `width_m`.
+PlacedCamera look_parallel(glm::vec3 eye, glm::vec3 target, float width_m);
 
 /// Scene-referred pixels of one frame.
 struct Pixels {

@@ -1,0 +1,89 @@
+// Everything that lights a pose, in one table to choose from by power: punctual lights, emissive triangles and the
+// environment. Any pass may sample it through shaders/light_sampling.glsl.
+#pragma once
+
+#include <optional>
+
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/texture.h"
+#include "renderer/passes/alias_table.h"
+#include "renderer/passes/emitters.h"
+#include "renderer/passes/environment_cells.h"
+
+namespace lightwell {
+
+/// Where in the buffers things are; uniforms of the same names in shaders/light_sampling.glsl.
+struct LightCounts {
+  std::uint32_t lights = 0;    // all that can be chosen
+  std::uint32_t punctual = 0;  // the first of them; a table of their own follows the one of all lights
+  glm::ivec2 environment_cells{0};
+  float environment_probability = 0.0f;
+};
+
+class LightTable {
+ public:
+  LightTable();
+
+  /// Brings the table to a pose. What did not change since the last call is kept.
+  void prepare(const Scene& scene, const Pose& pose);
+
+  /// Binds what shaders/light_sampling.glsl declares.
+  void bind() const;
+
+  const LightCounts& counts() const { return counts_; }
+  bool has_punctual() const { return counts_.punctual > 0; }
+  bool has_emitters() const { return has_emitters_; }
+  bool has_environment() const { return counts_.environment_probability > 0.0f; }
+
+ private:
+  struct EmitterKey {  // what an instance's emitters depend on
+    const Primitive* primitive;
+    std::shared_ptr<const DeformedVertices> deformed;
+    glm::mat4 world_from_object;
+    glm::vec3 radiance;
+    TextureUse texture;
+    std::shared_ptr<const Image> image;
+    std::size_t instance;
+    bool operator==(const EmitterKey& other) const;
+  };
+  struct EmittingInstance {
+    EmitterKey key;
+    std::shared_ptr<const Primitive> primitive;
+    std::vector<Emitter> emitters;
+  };
+  struct EnvironmentKey {
+    glm::vec3 zenith, horizon, ground;
+    float strength;
+    std::shared_ptr<const ImageHdr> image;
+    bool operator==(const EnvironmentKey&) const = default;
+  };
+
+  bool update_emitters(const Scene& scene, const Pose& pose);
+  bool update_environment(const Environment& environment);
+  void upload(const Pose& pose);
+
+  EmissiveTextures emissive_textures_;
+  std::vector<EmittingInstance> emitting_;
+  std::optional<EnvironmentKey> environment_key_;
+  EnvironmentCells cells_;
+  LightCounts counts_;
+  bool has_emitters_ = false;
+  std::size_t uploaded_instances_ = 0;
+  gl::Buffer lights_, choices_, instance_lights_;
+  gl::BufferTexture light_texels_, choice_texels_, instance_light_texels_;
+};
+
+/// The uniforms of shaders/light_sampling.glsl in one program.
+class LightTableUniforms {
+ public:
+  explicit LightTableUniforms(const gl::ProgramPtr& program);
+  void set(const LightCounts& counts) const;
+
+ private:
+  gl::Uniform<std::uint32_t> lights_, punctual_;
+  gl::Uniform<glm::ivec2> cells_;
+  gl::Uniform<float> environment_probability_;
+};
+
+}  // namespace lightwell

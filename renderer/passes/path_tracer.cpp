@@ -1,0 +1,266 @@
+#include "renderer/passes/path_tracer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+namespace {
+
+// Paths in flight. A software device keeps what they carry in its caches; a GPU must have many to hide its latencies.
+constexpr std::uint32_t kPathsOnHost = 1u << 16;
+constexpr std::uint32_t kPathsOnDevice = 1u << 20;  // as many as a path's word can name
+
+constexpr GLbitfield kBetweenStages = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
+
+// Uniforms of shaders/path.glsl, where a program has them.
+struct PathUniforms {
+  explicit PathUniforms(const gl::ProgramPtr& p)
+      : path_count(p, "path_count"),
+        first_pixel(p, "first_pixel"),
+        picture_width_px(p, "picture_width_px"),
+        sample_number(p, "sample_number"),
+        seed(p, "seed"),
+        shown(p, "shown") {}
+
+  void set(const FrameContext& frame, std::uint32_t first) const {
+    first_pixel = first;
+    picture_width_px = frame.size_px.x;
+    sample_number = frame.frame_number;
+    seed = frame.settings.seed;
+    const ViewKind view = frame.settings.view;
+    shown = glm::vec2(view == ViewKind::kIndirect ? 0.0f : 1.0f, view == ViewKind::kDirect ? 0.0f : 1.0f);
+  }
+
+  gl::Uniform<std::uint32_t> path_count, first_pixel;
+  gl::Uniform<int> picture_width_px;
+  gl::Uniform<std::uint32_t> sample_number, seed;
+  gl::Uniform<glm::vec2> shown;
+};
+
+struct PathProgram {
+  explicit PathProgram(gl::ProgramPtr p) : program(std::move(p)), uniforms(program) {}
+  gl::ProgramPtr program;
+  PathUniforms uniforms;
+};
+
+// What paths carry from one surface to the next.
+struct Carried {
+  Carried(gl::BufferUse use, std::uint32_t paths)
+      : rays("path rays", std::uint64_t{paths} * sizeof(Ray), use),
+        states("path states", std::uint64_t{paths} * sizeof(glm::vec4)),
+        pixels("path pixels", std::uint64_t{paths} * sizeof(std::uint32_t)),
+        ray_texels("path rays", GL_RGBA32F),
+        state_texels("path states", GL_RGBA32F),
+        pixel_texels("path pixels", GL_R32UI) {
+    ray_texels.attach(rays);
+    state_texels.attach(states);
+    pixel_texels.attach(pixels);
+  }
+  void bind_for_writing() const {
+    rays.bind_storage(BINDING_PATH_RAYS);
+    states.bind_storage(BINDING_PATH_STATES);
+    pixels.bind_storage(BINDING_PATH_PIXELS);
+  }
+  void bind_for_reading() const {
+    ray_texels.bind(UNIT_RAYS);
+    state_texels.bind(UNIT_PATH_STATES);
+    pixel_texels.bind(UNIT_PATH_PIXELS);
+  }
+  gl::Buffer rays, states, pixels;
+  gl::BufferTexture ray_texels, state_texels, pixel_texels;
+};
+
+std::uint32_t chunks_of(std::uint32_t paths) {
+  return (paths + PATH_CHUNK - 1) / PATH_CHUNK;
+}
+
+}  // namespace
+
+struct PathTracerPass::VertexVariant : PathProgram {
+  explicit VertexVariant(const gl::ProgramPtr& p)
+      : PathProgram(p), lights(p), most_bounces(p, "most_bounces"), strategies(p, "strategies") {}
+  LightTableUniforms lights;
+  gl::Uniform<std::uint32_t> most_bounces;
+  gl::Uniform<glm::vec2> strategies;
+};
+
+struct PathTracerPass::Programs {
+  explicit Programs(gl::ShaderLibrary& shaders)
+      : start(shaders.compute("passes/path_start.comp")),
+        resolve(shaders.compute("passes/path_resolve.comp")),
+        scan(shaders.compute("passes/path_compact.comp", {"SCAN 1"})),
+        compact(shaders.compute("passes/path_compact.comp")),
+        accumulate(shaders.raster("passes/full_screen.vert", "passes/path_accumulate.frag")),
+        vertex([&shaders](const gl::Defines& defines) { return shaders.compute("passes/path_vertex.comp", defines); }) {
+  }
+  PathProgram start, resolve, scan, compact, accumulate;
+  gl::Variants<VertexVariant> vertex;
+};
+
+struct PathTracerPass::Slots {
+  Slots(gl::BufferUse use, std::uint32_t paths)
+      : from(std::make_unique<Carried>(use, paths)),
+        to(std::make_unique<Carried>(use, paths)),
+        shadow_rays("shadow rays", std::uint64_t{paths} * sizeof(Ray), use),
+        hits("path hits", std::uint64_t{paths} * sizeof(Hit), use),
+        visible("visible lights", (std::uint64_t{paths} + 31) / 32 * 4, use),
+        pending("pending light", std::uint64_t{paths} * 16),
+        radiance("path radiance", std::uint64_t{paths} * sizeof(glm::vec4)),
+        slots("path slots", std::uint64_t{paths} * 4),
+        counts("path counts", 4 * (1 + std::uint64_t{chunks_of(paths)}), use),
+        hit_texels("path hits", GL_R32UI),
+        visible_texels("visible lights", GL_R32UI),
+        pending_texels("pending light", GL_RGBA32UI),
+        radiance_texels("path radiance", GL_RGBA32F),
+        slot_texels("path slots", GL_R32UI) {
+    hit_texels.attach(hits);
+    visible_texels.attach(visible);
+    pending_texels.attach(pending);
+    radiance_texels.attach(radiance);
+    slot_texels.attach(slots);
+  }
+
+  std::unique_ptr<Carried> from, to;  // what paths brought to their surfaces, and what they take from there
+  gl::Buffer shadow_rays, hits, visible, pending, radiance, slots, counts;
+  gl::BufferTexture hit_texels, visible_texels, pending_texels, radiance_texels, slot_texels;
+};
+
+PathTracerPass::PathTracerPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
+    : programs_(std::make_unique<Programs>(shaders)),
+      most_paths_(buffers == gl::BufferUse::kHostVisible ? kPathsOnHost : kPathsOnDevice) {
+  slots_ = std::make_unique<Slots>(buffers, most_paths_);
+}
+
+PathTracerPass::~PathTracerPass() = default;
+
+void PathTracerPass::resize(glm::ivec2 size_px) {
+  if (picture_.image && picture_.image.size_px() == size_px) return;
+  picture_ = {gl::Texture("picture", GL_RGBA32F, size_px), 0};
+  framebuffer_ = gl::Framebuffer("picture", {&picture_.image}, nullptr);
+}
+
+// A software device pays for all that a shader could do, so there is one for each kind of scene. They are compiled when
+// the first such scene comes: together they would take seconds.
+PathTracerPass::VertexVariant& PathTracerPass::variant_for(const DeviceScene& scene, const LightTable& lights) {
+  gl::Defines defines =
+      gl::joined(gl::joined(scene.texture_defines(), scene.brdf_defines()), scene.environment_defines());
+  if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
+  if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
+  if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
+  return programs_->vertex.with(defines);
+}
+
+const Picture& PathTracerPass::run(FrameContext& frame, const LightTable& lights) {
+  if (frame.frame_number == 0) picture_.accumulated = 0;
+  const auto width = static_cast<std::uint32_t>(frame.size_px.x);
+  const int rows_per_wave = std::max(1, static_cast<int>(most_paths_ / width));
+  for (int row = 0; row < frame.size_px.y; row += rows_per_wave) {
+    const int rows = std::min(rows_per_wave, frame.size_px.y - row);
+    trace_wave(frame, lights,
+               {row, rows, static_cast<std::uint32_t>(row) * width, static_cast<std::uint32_t>(rows) * width});
+  }
+  ++picture_.accumulated;
+  return picture_;
+}
+
+void PathTracerPass::trace_wave(FrameContext& frame, const LightTable& lights, const Wave& wave) {
+  VertexVariant& variant = variant_for(frame.scene, lights);
+  variant.uniforms.set(frame, wave.first_pixel);
+  variant.lights.set(lights.counts());
+  programs_->resolve.uniforms.set(frame, wave.first_pixel);
+  start(frame, wave);
+  Slots& s = *slots_;
+  frame.tracer.closest_hit(s.to->rays, wave.paths, s.hits);
+  frame.timer.mark("trace");
+  frame.rays += wave.paths;
+  for (std::uint32_t paths = wave.paths; paths > 0;) {
+    meet_surfaces(frame, variant, paths);
+    frame.timer.mark("surfaces");
+    frame.tracer.any_hit(s.shadow_rays, paths, s.visible);
+    frame.timer.mark("shadows");
+    frame.tracer.closest_hit(s.to->rays, paths, s.hits);
+    frame.timer.mark("trace");
+    paths = pack(paths);
+    frame.timer.mark("pack");
+  }
+  accumulate(frame, wave);
+  frame.timer.mark("accumulate");
+}
+
+void PathTracerPass::start(const FrameContext& frame, const Wave& wave) {
+  const PathProgram& program = programs_->start;
+  program.uniforms.set(frame, wave.first_pixel);
+  program.uniforms.path_count = wave.paths;
+  slots_->to->bind_for_writing();
+  slots_->radiance.bind_storage(BINDING_PATH_RADIANCE);
+  slots_->slots.bind_storage(BINDING_PATH_SLOTS);
+  program.program->dispatch(wave.paths);
+  glMemoryBarrier(kBetweenStages);
+}
+
+void PathTracerPass::meet_surfaces(const FrameContext& frame, VertexVariant& variant, std::uint32_t paths) {
+  Slots& s = *slots_;
+  std::swap(s.from, s.to);
+  s.from->bind_for_reading();
+  s.to->bind_for_writing();
+  s.hit_texels.bind(UNIT_HITS);
+  s.slot_texels.bind(UNIT_PATH_SLOTS);
+  s.shadow_rays.bind_storage(BINDING_PATH_SHADOW_RAYS);
+  s.pending.bind_storage(BINDING_PATH_PENDING);
+  s.radiance.bind_storage(BINDING_PATH_RADIANCE);
+  variant.uniforms.path_count = paths;
+  variant.most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
+  const LightStrategy strategy = frame.settings.light_strategy;
+  variant.strategies =
+      glm::vec2(strategy == LightStrategy::kRays ? 0.0f : 1.0f, strategy == LightStrategy::kLights ? 0.0f : 1.0f);
+  variant.program->dispatch(paths);
+  glMemoryBarrier(kBetweenStages);
+}
+
+// Adds the light that got through; the number of paths that go on.
+std::uint32_t PathTracerPass::pack(std::uint32_t paths) {
+  Slots& s = *slots_;
+  s.visible_texels.bind(UNIT_PATH_VISIBLE);
+  s.pending_texels.bind(UNIT_PATH_PENDING);
+  s.to->pixel_texels.bind(UNIT_PATH_PIXELS);
+  s.radiance.bind_storage(BINDING_PATH_RADIANCE);
+  s.counts.bind_storage(BINDING_PATH_COUNTS);
+  s.slots.bind_storage(BINDING_PATH_SLOTS);
+  for (const PathProgram* program : {&programs_->resolve, &programs_->scan, &programs_->compact}) {
+    program->uniforms.path_count = paths;
+    program->program->dispatch(program == &programs_->scan ? 1u : chunks_of(paths));
+    glMemoryBarrier(kBetweenStages);
+  }
+  std::uint32_t going_on = 0;
+  if (s.counts.host()) {
+    gl::wait_for_device();
+    std::memcpy(&going_on, s.counts.host(), sizeof going_on);
+  } else {
+    s.counts.download(std::as_writable_bytes(std::span(&going_on, 1)));
+  }
+  return going_on;
+}
+
+void PathTracerPass::accumulate(const FrameContext& frame, const Wave& wave) {
+  const PathProgram& program = programs_->accumulate;
+  program.uniforms.set(frame, wave.first_pixel);
+  slots_->radiance_texels.bind(UNIT_PATH_RADIANCE);
+  program.program->use();
+  framebuffer_.bind();
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, wave.first_row, frame.size_px.x, wave.rows);
+  if (picture_.accumulated > 0) {
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+    glBlendColor(0.0f, 0.0f, 0.0f, 1.0f / static_cast<float>(picture_.accumulated + 1));
+  }
+  full_screen_.draw_full_screen();
+  glDisable(GL_BLEND);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,49 @@
+// A wavefront path tracer over the tracers' seam: all paths of a wave meet their surfaces in one dispatch, then all
+// shadow rays and all next rays are traced, and the paths that go on are packed together.
+#pragma once
+
+#include <memory>
+
+#include "renderer/methods/frame_context.h"
+#include "renderer/passes/compose.h"
+#include "renderer/passes/light_table.h"
+
+namespace lightwell {
+
+class PathTracerPass {
+ public:
+  /// `buffers`: where rays and hits live; host-visible for a native tracer.
+  PathTracerPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
+  ~PathTracerPass();
+
+  void resize(glm::ivec2 size_px);
+
+  /// Adds one path per pixel to the picture, or begins it anew if `frame.frame_number` is 0. The number is the sample's
+  /// index in each pixel's sequences.
+  const Picture& run(FrameContext& frame, const LightTable& lights);
+
+ private:
+  struct Wave {  // rows of the picture
+    int first_row = 0, rows = 0;
+    std::uint32_t first_pixel = 0, paths = 0;
+  };
+  struct Programs;
+  struct VertexVariant;
+  struct Slots;
+
+  VertexVariant& variant_for(const DeviceScene& scene, const LightTable& lights);
+  void trace_wave(FrameContext& frame, const LightTable& lights, const Wave& wave);
+  void start(const FrameContext& frame, const Wave& wave);
+  void meet_surfaces(const FrameContext& frame, VertexVariant& variant, std::uint32_t paths);
+  std::uint32_t pack(std::uint32_t paths);
+  void accumulate(const FrameContext& frame, const Wave& wave);
+
+  std::unique_ptr<Programs> programs_;
+  std::unique_ptr<Slots> slots_;
+  std::uint32_t most_paths_;  // in a wave
+  Picture picture_;
+  gl::Framebuffer framebuffer_;
+  gl::EmptyVertexArray full_screen_;
+};
+
+}  // namespace lightwell

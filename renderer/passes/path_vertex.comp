@@ -1,0 +1,217 @@
+// A path meets a surface, or leaves the scene. Its light is added, weighted against what the last surface's sample of the
+// lights could have found (Veach 1997, power heuristic); a light is sampled, to be added if its shadow ray gets through;
+// and the path goes on along a direction sampled by the BRDF, or ends.
+layout(local_size_x = 64) in;
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/scene_data.glsl"
+#include "shaders/ray.glsl"
+#ifdef HAS_TEXTURES
+#include "shaders/textures.glsl"
+#endif
+#include "shaders/surface.glsl"
+#include "shaders/hit_surface.glsl"
+#include "shaders/lights.glsl"
+#include "shaders/environment.glsl"
+#include "shaders/light_sampling.glsl"
+#include "shaders/path.glsl"
+
+layout(binding = UNIT_PATH_SLOTS) uniform usamplerBuffer slots;      // where the paths are that go on
+layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;        // 2 texels a ray
+layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;        // 5 texels a hit
+layout(binding = UNIT_PATH_STATES) uniform samplerBuffer states_in;  // throughput; density of the ray's direction
+layout(binding = UNIT_PATH_PIXELS) uniform usamplerBuffer paths_in;
+layout(std430, binding = BINDING_PATH_RAYS) writeonly buffer Rays { Ray rays[]; };
+layout(std430, binding = BINDING_PATH_SHADOW_RAYS) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(std430, binding = BINDING_PATH_STATES) writeonly buffer States { vec4 states[]; };
+layout(std430, binding = BINDING_PATH_PIXELS) writeonly buffer Pixels { uint paths[]; };
+layout(std430, binding = BINDING_PATH_PENDING) writeonly buffer Pending { uvec4 pending[]; };
+layout(std430, binding = BINDING_PATH_RADIANCE) buffer Radiance { vec4 radiance[]; };
+
+uniform uint path_count;
+uniform uint most_bounces;
+uniform vec2 strategies; // of sampling lights and of sampling the BRDF: 1 each; with one of them 0 the other stands alone
+
+const uint kRouletteAfter = 3u;       // bounces
+const float kMostSurvival = 0.98;
+
+const Ray kNoRay = Ray(vec3(0.0), 0.0, vec3(0.0, 1.0, 0.0), -1.0);
+
+float greatest(vec3 v) { return max(v.x, max(v.y, v.z)); }
+
+// The share of a sample of density `own` where another strategy has density `other`: Veach's power heuristic. `other` is 0
+// where it cannot find the light.
+float mis_weight(float own, float other) {
+  const float ratio = other / max(own, 1e-30);
+  return 1.0 / (1.0 + ratio * ratio);
+}
+
+// Of light found by a ray that a BRDF sampled, where sampling the lights has density `light_pdf`.
+float weight_of_found_light(float brdf_pdf, float light_pdf) {
+  if (light_pdf <= 0.0 || strategies.x < 0.5) return 1.0;
+  return strategies.y > 0.5 ? mis_weight(brdf_pdf, light_pdf) : 0.0;
+}
+
+float weight_of_sampled_light(float light_pdf, float brdf_pdf) {
+  if (light_pdf <= 0.0 || strategies.y < 0.5) return 1.0;  // no density: punctual, no ray finds it
+  return strategies.x > 0.5 ? mis_weight(light_pdf, brdf_pdf) : 0.0;
+}
+
+struct Path {
+  Ray ray;
+  vec3 throughput;
+  float pdf;
+  uint pixel;
+  uint depth;
+};
+
+void add_light(Path path, vec3 light, bool direct) {
+  if (greatest(light) > 0.0) radiance[path.pixel] += shown_light(light, direct);
+}
+
+// Light from beyond the scene.
+void leave_scene(Path path) {
+  const vec3 direction = path.ray.direction_ws;
+  if (path.depth == 0u) {
+    radiance[path.pixel] = vec4(background_radiance(direction) * shown.x, 0.0);
+    return;
+  }
+#ifdef LIGHTS_ENVIRONMENT
+  const float weight = weight_of_found_light(path.pdf, environment_pdf(direction));
+  add_light(path, path.throughput * environment_radiance(direction) * weight, false);
+#endif
+}
+
+void add_emission(Path path, Hit hit, HitPoint point) {
+  const bool seen = path.depth == 0u;
+  const bool unlit = (point.material_flags & kMaterialUnlit) != 0u;
+  if (unlit) {
+    if (seen) radiance[path.pixel] = vec4(point.surface.base_color.rgb * shown.x, -1.0);
+    return;
+  }
+  float weight = 1.0;
+#ifdef LIGHTS_TRIANGLES
+  const float cosine = dot(point.geometric_normal_ws, path.ray.direction_ws);
+  if (!seen) weight = weight_of_found_light(path.pdf, triangle_pdf(hit.instance, hit.triangle, hit.t, cosine));
+#endif
+  if (seen) radiance[path.pixel].a = 1.0;  // a surface: see Picture
+  add_light(path, path.throughput * point.surface.emission * weight, seen);
+}
+
+// Off the surface on the side of `direction`, well over the rounding of a hit.
+vec3 lifted(Path path, HitPoint point, Hit hit, vec3 direction) {
+  const vec3 size = abs(point.position_ws);
+  const float offset_m = 1e-5 * (max(size.x, max(size.y, size.z)) + hit.t);
+  const float side = dot(direction, point.geometric_normal_ws) >= 0.0 ? 1.0 : -1.0;
+  return point.position_ws + side * offset_m * point.geometric_normal_ws;
+}
+
+// To just before the light: aimed from where the ray begins, for from the surface it would pierce a near light's plane
+// sooner than at its end.
+Ray shadow_ray(vec3 origin_ws, vec3 position_ws, TableSample at) {
+  if (at.distance_m >= kInfinitelyFar) return Ray(origin_ws, 0.0, at.to_light_ws, at.distance_m);
+  const vec3 to_light = position_ws + at.to_light_ws * at.distance_m - origin_ws;
+  const float distance_m = length(to_light);
+  return Ray(origin_ws, 0.0, to_light / max(distance_m, 1e-20), distance_m * (1.0 - 1e-4));
+}
+
+// The part of f cos(theta) that counts: shading and geometric normal must agree on which side a direction is.
+vec3 reflected(HitPoint point, vec3 out_direction, vec3 in_direction, vec3 in_ws) {
+  const bool agree = in_direction.z * dot(in_ws, point.geometric_normal_ws) > 0.0;
+  return agree ? brdf_times_cosine(point.brdf, out_direction, in_direction) : vec3(0.0);
+}
+
+void sample_lights(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_direction, uint pixel_seed,
+                   float u_choice, bool lit) {
+  Ray ray = kNoRay;
+  vec3 light = vec3(0.0);
+#if defined(LIGHTS_PUNCTUAL) || defined(LIGHTS_TRIANGLES) || defined(LIGHTS_ENVIRONMENT)
+  const uint light_seed = decision_seed(pixel_seed, path.depth, kDecisionLight);
+  const vec2 u = sobol_2d(sample_number, light_seed);
+  const float u_cell = unit_interval(hash(light_seed + sample_number * 0x85ebca6bu));
+  const TableSample at = sample_light(point.position_ws, path.depth >= most_bounces, u, u_choice, u_cell);
+  const vec3 in_direction = at.to_light_ws * frame;
+  const float weight = weight_of_sampled_light(at.pdf, brdf_pdf(point.brdf, out_direction, in_direction));
+  if (lit) light = path.throughput * reflected(point, out_direction, in_direction, at.to_light_ws) * at.value * weight;
+  const bool worthwhile = greatest(light) > 0.0;
+  if (worthwhile) ray = shadow_ray(lifted(path, point, hit, at.to_light_ws), point.position_ws, at);
+  const bool direct = path.depth == 0u && at.pdf <= 0.0;
+#else
+  const bool direct = false;
+#endif
+  shadow_rays[slot] = ray;
+  pending[slot] = uvec4(floatBitsToUint(light), ray.t_max > 0.0 ? pack_pending(path.pixel, direct) : kDeadPath);
+}
+
+// The next ray and what it will carry; ends the path where there is none.
+void go_on(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_direction, uint pixel_seed,
+           float u_lobe, bool lit) {
+  const vec2 u = sobol_2d(sample_number, decision_seed(pixel_seed, path.depth, kDecisionDirection));
+  const vec3 in_direction = sample_brdf(point.brdf, out_direction, u, u_lobe);
+  const float pdf = brdf_pdf(point.brdf, out_direction, in_direction);
+  const vec3 in_ws = normalize(frame * in_direction);
+  vec3 throughput = path.throughput * reflected(point, out_direction, in_direction, in_ws) / max(pdf, 1e-20);
+  bool alive = lit && pdf > 0.0 && path.depth < min(most_bounces, kGreatestDepth) && greatest(throughput) > 0.0;
+  if (path.depth >= kRouletteAfter) {
+    const float survival = min(greatest(throughput), kMostSurvival);
+    alive = alive && sobol_1d(sample_number, decision_seed(pixel_seed, path.depth, kDecisionSurvival)) < survival;
+    throughput /= max(survival, 1e-20);
+  }
+  rays[slot] = alive ? Ray(lifted(path, point, hit, in_ws), 0.0, in_ws, 1e30) : kNoRay;
+  states[slot] = vec4(throughput, pdf);
+  paths[slot] = alive ? pack_path(path.pixel, path.depth + 1u) : kDeadPath;
+}
+
+void end_path(uint slot) {
+  rays[slot] = kNoRay;
+  shadow_rays[slot] = kNoRay;
+  pending[slot].w = kDeadPath;
+  paths[slot] = kDeadPath;
+}
+
+// The camera does not see backs, as in the G-buffer: its ray goes on behind them.
+void pass_through(uint slot, Path path, Hit hit) {
+  rays[slot] = Ray(path.ray.origin_ws, hit.t * (1.0 + 2e-6), path.ray.direction_ws, path.ray.t_max);
+  shadow_rays[slot] = kNoRay;
+  pending[slot].w = kDeadPath;
+  states[slot] = vec4(path.throughput, path.pdf);
+  paths[slot] = pack_path(path.pixel, path.depth);
+}
+
+void main() {
+  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  if (slot >= path_count) return;
+  const int from = int(texelFetch(slots, int(slot)).x);
+  const vec4 origin = texelFetch(ray_texels, 2 * from);
+  const vec4 direction = texelFetch(ray_texels, 2 * from + 1);
+  const vec4 state = texelFetch(states_in, from);
+  const uint packed_path = texelFetch(paths_in, from).x;
+  const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, 5 * from).x), texelFetch(hit_words, 5 * from + 1).x,
+                      texelFetch(hit_words, 5 * from + 2).x, uintBitsToFloat(texelFetch(hit_words, 5 * from + 3).x),
+                      uintBitsToFloat(texelFetch(hit_words, 5 * from + 4).x));
+  const Path path = Path(Ray(origin.xyz, origin.w, direction.xyz, direction.w), state.xyz, state.w,
+                         path_pixel(packed_path), path_depth(packed_path));
+  if (hit.t < 0.0) {
+    leave_scene(path);
+    end_path(slot);
+    return;
+  }
+  HitPoint point = hit_point(path.ray, hit, 0.0);
+  if (path.depth == 0u && point.from_behind && (point.material_flags & kMaterialDoubleSided) == 0u) {
+    pass_through(slot, path, hit);
+    return;
+  }
+  add_emission(path, hit, point);
+  const bool lit = (point.material_flags & kMaterialUnlit) == 0u;
+  const uint seed_of_pixel = pixel_seed(picture_pixel(path.pixel));
+  const mat3 frame = frame_around(point.surface.normal_ws);
+  const vec3 out_direction = -path.ray.direction_ws * frame;
+  point.brdf = brdf_in_frame(point.brdf, frame);
+  const vec2 u_kinds = sobol_2d(sample_number, decision_seed(seed_of_pixel, path.depth, kDecisionKinds));
+  sample_lights(slot, path, hit, point, frame, out_direction, seed_of_pixel, u_kinds.x, lit);
+  go_on(slot, path, hit, point, frame, out_direction, seed_of_pixel, u_kinds.y, lit);
+}

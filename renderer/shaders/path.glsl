@@ -1,0 +1,41 @@
+// The state of paths in flight: renderer/passes/path_tracer.h. A path lives in a slot; slots are packed anew after every
+// bounce, so that all lanes have work. Needs packing, sampling.
+
+// Which pixel of the wave a path belongs to, and how many surfaces it has met.
+const uint kDeadPath = 0xffffffffu;
+const uint kPixelBits = 20u;
+uint pack_path(uint pixel, uint depth) { return pixel | depth << kPixelBits; }
+uint path_pixel(uint path) { return path & ((1u << kPixelBits) - 1u); }
+uint path_depth(uint path) { return path >> kPixelBits; }
+const uint kGreatestDepth = (1u << (32u - kPixelBits)) - 2u;
+
+// Light that waits for its shadow ray; kDeadPath where there is none.
+const uint kDirectLight = 1u << 31u;
+uint pack_pending(uint pixel, bool direct) { return direct ? pixel | kDirectLight : pixel; }
+uint pending_pixel(uint bits) { return bits & ~kDirectLight; }
+
+uniform vec2 shown;  // of direct and of indirect light, 0 or 1
+
+// Its part of a pixel: the light the view shows and the luminance of all.
+vec4 shown_light(vec3 light, bool direct) { return vec4(light * (direct ? shown.x : shown.y), luminance(light)); }
+
+// The first of the picture's pixels in this wave, in rows; the picture's width.
+uniform uint first_pixel;
+uniform int picture_width_px;
+
+ivec2 picture_pixel(uint wave_pixel) {
+  const uint index = first_pixel + wave_pixel;
+  return ivec2(index % uint(picture_width_px), index / uint(picture_width_px));
+}
+
+// Sobol points: every pixel has sequences of its own, one for each decision along its paths; the sample is the index.
+uniform uint sample_number;
+uniform uint seed;
+
+uint pixel_seed(ivec2 pixel) { return hash(uvec3(pixel, seed)); }
+
+const uint kDecisionFilter = 0u;
+const uint kDecisionLight = 1u, kDecisionDirection = 2u, kDecisionKinds = 3u, kDecisionSurvival = 4u;
+uint decision_seed(uint pixel_seed, uint depth, uint decision) {
+  return pixel_seed + (4u * depth + decision) * 0x9e3779b9u;
+}
