@@ -121,7 +121,7 @@ void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, c
     else
       hit_light_pass_.run_from_screen(g_buffer, occlusion_, previous_bounce_.image, literal, directions);
     frame.timer.mark(bounce == 1 ? "light of hits" : "light from screen");
-    gather_pass_.run(g_buffer, grid, *active_blocks_, directions, occlusion_,
+    gather_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, directions, occlusion_,
                      {samples, literal, bounce == 1 && !literal}, bounce_);
     frame.timer.mark("gather");
   }

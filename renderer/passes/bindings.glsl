@@ -2,7 +2,7 @@
 // pass at hand; what every pass may read has a place of its own.
 #define BINDING_RAYS 0
 #define BINDING_HITS 1
-#define BINDING_WEIGHTS 2
+#define BINDING_HIT_WEIGHTS 2
 #define BINDING_ARRIVING 3
 #define BINDING_OUTPUT 4
 
@@ -39,7 +39,6 @@
 #define UNIT_MATERIALS 21
 #define UNIT_RAYS 22
 #define UNIT_HITS 23
-#define UNIT_WEIGHTS 24
 #define UNIT_ARRIVING 25
 #define UNIT_SAMPLE_POINTS 26
 #define UNIT_GUIDE 27

@@ -1,6 +1,6 @@
 // The sampling direction map D(p, j) (thesis 3.1): directions importance-sampled by the BRDF, each with its weight
-// f cos(theta) / pdf, and with what arrives if it hits nothing. Rays lie direction by direction: ray = j * slot_count +
-// slot. An invocation makes several of a pixel.
+// f cos(theta) / pdf. Rays lie direction by direction: ray = j * slot_count + slot. An invocation makes several of a
+// pixel. A software device pays for every word that is stored.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -11,12 +11,10 @@ layout(local_size_x = 64) in;
 #include "shaders/g_buffer.glsl"
 #include "shaders/ray.glsl"
 #include "shaders/indirect_map.glsl"
-#include "shaders/environment.glsl"
 #include "shaders/arriving.glsl"
 
 layout(std430, binding = BINDING_RAYS) writeonly buffer Rays { Ray rays[]; };
-layout(std430, binding = BINDING_WEIGHTS) writeonly buffer Weights { vec4 weights[]; };
-layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };
+layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { uvec4 arriving[]; };
 
 layout(binding = UNIT_SAMPLE_POINTS) uniform samplerBuffer sample_points;  // 16 a direction, see sample_points.comp
 
@@ -36,7 +34,6 @@ void main() {
   const mat3 frame = frame_around(point.normal_ws);
   const vec3 out_direction = point.to_camera_ws * frame;
   const vec3 origin_ws = point.position_ws + point.geometric_normal_ws * ray_offset_m(point);
-  const Sky sky = load_sky();
 
   for (uint j = first; j < min(first + kDirectionsPerInvocation, direction_count); ++j) {
     const vec3 u = texelFetch(sample_points, int(16u * j) + place).xyz;
@@ -47,8 +44,9 @@ void main() {
     const vec3 weight =
         active_ray ? brdf_times_cosine(point.brdf, out_direction, in_direction) / max(pdf, 1e-20) : vec3(0.0);
     const uint ray = j * slot_count + slot;
-    rays[ray] = Ray(origin_ws, 0.0, in_ws, active_ray ? 1e30 : -1.0);
-    weights[ray] = vec4(weight, 0.0);
-    arriving[ray] = vec4(weight * sky_radiance(sky, in_ws), kNoHit);
+    rays[ray].origin_ws = origin_ws;  // t_min stays 0
+    rays[ray].direction_ws = in_ws;
+    rays[ray].t_max = active_ray ? 1e30 : -1.0;
+    arriving[ray] = pack_unlit(weight, in_ws);
   }
 }

@@ -14,7 +14,6 @@ DirectionsPass::DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       point_texels_("sample points", GL_RGBA32F),
       variants_([&shaders](const gl::Defines& defines) { return shaders.compute("passes/directions.comp", defines); }) {
   directions_.rays = gl::Buffer("rays", 0, buffers);
-  directions_.weights = gl::Buffer("direction weights", 0);
   directions_.arriving = gl::Buffer("arriving light", 0);
 }
 
@@ -31,11 +30,9 @@ void DirectionsPass::make_sample_points(std::uint32_t first, std::uint32_t count
 }
 
 void DirectionsPass::resize(std::uint32_t most_rays) {
-  directions_.rays.reserve(std::uint64_t{most_rays} * sizeof(Ray));
+  if (directions_.rays.reserve(std::uint64_t{most_rays} * sizeof(Ray))) directions_.rays.clear();
   directions_.ray_texels.attach(directions_.rays);
-  directions_.weights.reserve(std::uint64_t{most_rays} * sizeof(glm::vec4));
-  directions_.weight_texels.attach(directions_.weights);
-  directions_.arriving.reserve(std::uint64_t{most_rays} * sizeof(glm::vec4));
+  directions_.arriving.reserve(std::uint64_t{most_rays} * sizeof(glm::uvec4));
   directions_.arriving_texels.attach(directions_.arriving);
 }
 
@@ -49,10 +46,9 @@ Directions& DirectionsPass::run(const DeviceScene& scene, const GBuffer& g_buffe
   g_buffer.bind();
   point_texels_.bind(UNIT_SAMPLE_POINTS);
   directions_.rays.bind_storage(BINDING_RAYS);
-  directions_.weights.bind_storage(BINDING_WEIGHTS);
   blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
   directions_.arriving.bind_storage(BINDING_ARRIVING);
-  Variant& variant = variants_.with(gl::joined(scene.environment_defines(), scene.brdf_defines()));
+  Variant& variant = variants_.with(scene.brdf_defines());
   variant.grid.set(grid, blocks.slots());
   variant.count = count;
   constexpr std::uint32_t kDirectionsPerInvocation = 8;  // as in directions.comp

@@ -16,11 +16,8 @@ namespace lightwell {
 struct Directions {
   gl::Buffer rays;                                   // Ray
   gl::BufferTexture ray_texels{"rays", GL_RGBA32F};  // the same, 2 texels a ray
-  gl::Buffer weights;                                // vec4: f cos(theta) / pdf
-  gl::BufferTexture weight_texels{"direction weights", GL_RGBA32F};
-  gl::Buffer
-      arriving;  // vec4, light times weight and its distance: the environment's (kNoHit) until a hit's takes its place
-  gl::BufferTexture arriving_texels{"arriving light", GL_RGBA32F};
+  gl::Buffer arriving;                               // uvec4 (shaders/arriving.glsl): unlit, until hits are
+  gl::BufferTexture arriving_texels{"arriving light", GL_RGBA32UI};
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t ray_count = 0;

@@ -11,11 +11,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/g_buffer.glsl"
 #include "shaders/indirect_map.glsl"
 #include "shaders/arriving.glsl"
+#include "shaders/environment.glsl"
 
 #ifdef LITERAL
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit, distance first
 #endif
-layout(binding = UNIT_ARRIVING) uniform samplerBuffer arriving;
+layout(binding = UNIT_ARRIVING) uniform usamplerBuffer arriving;
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
 layout(rgba32ui, binding = 2) writeonly uniform uimage2D guide;  // what the filter compares, see indirect_filter.comp
@@ -26,12 +27,15 @@ uniform int first_batch;
 uniform float environment_share;  // 1 in the bounce to which misses bring the environment, else 0
 
 #ifdef LITERAL
-vec3 light_from(int ray, vec4 light) {
+vec3 light_from(int ray, uvec4 light) {
   const float t = uintBitsToFloat(texelFetch(hit_words, 5 * ray).x);
-  return t < 0.0 ? vec3(0.0) : light.rgb / max(t * t, 1e-12);
+  return is_lit(light) ? color_of(light) / max(t * t, 1e-12) : vec3(0.0);
 }
 #else
-vec3 light_from(int ray, vec4 light) { return light.rgb * (light.a == kNoHit ? environment_share : 1.0); }
+vec3 light_from(int ray, uvec4 light) {
+  const vec3 environment = environment_radiance(direction_of_unlit(light)) * environment_share;
+  return color_of(light) * (is_lit(light) ? vec3(1.0) : environment);
+}
 #endif
 
 void main() {
@@ -46,9 +50,9 @@ void main() {
   const uint count = slot == kNoRank ? 0u : direction_count;
   for (uint j = 0u; j < count; ++j) {
     const int index = int(j * slot_count + slot);
-    const vec4 light = texelFetch(arriving, index);
+    const uvec4 light = texelFetch(arriving, index);
     sum += light_from(index, light);
-    distance_sum += light.a == kNoHit ? vec2(0.0) : vec2(light.a, 1.0);
+    distance_sum += is_lit(light) ? vec2(distance_of_lit(light), 1.0) : vec2(0.0);
   }
 #ifndef LITERAL
   sum /= float(total_directions);

@@ -13,8 +13,7 @@ IndirectMap make_indirect_map(glm::ivec2 size_px) {
 }
 
 GatherPass::GatherPass(gl::ShaderLibrary& shaders)
-    : corrected_(shaders.compute("passes/gather.comp")),
-      literal_(shaders.compute("passes/gather.comp", {"LITERAL 1"})) {}
+    : variants_([&shaders](const gl::Defines& defines) { return shaders.compute("passes/gather.comp", defines); }) {}
 
 GatherPass::Variant::Variant(const gl::ProgramPtr& p)
     : program(p),
@@ -32,9 +31,9 @@ void GatherPass::resize(glm::ivec2 map_size_px) {
   guide_ = gl::Texture("filter guide", GL_RGBA32UI, map_size_px);
 }
 
-void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
-                     const Directions& directions, const OcclusionMap& occlusion, const Gathering& gathering,
-                     IndirectMap& map) {
+void GatherPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
+                     const ActiveBlocks& blocks, const Directions& directions, const OcclusionMap& occlusion,
+                     const Gathering& gathering, IndirectMap& map) {
   g_buffer.bind();
   blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
   directions.arriving_texels.bind(UNIT_ARRIVING);
@@ -42,7 +41,9 @@ void GatherPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const
   map.image.bind_image(0, GL_READ_WRITE);
   occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
   guide_.bind_image(2, GL_WRITE_ONLY);
-  Variant& variant = gathering.literal ? literal_ : corrected_;
+  const gl::Defines kLiteral{"LITERAL 1"};
+  Variant& variant =
+      variants_.with(gathering.literal ? kLiteral : gl::joined(scene.environment_defines(), scene.brdf_defines()));
   variant.grid.set(grid, blocks.slots());
   variant.direction_count = directions.count;
   variant.total_directions = gathering.total_directions;

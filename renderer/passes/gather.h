@@ -1,8 +1,8 @@
 // The indirect lighting map (thesis 4.2, Algorithm 2) and its optional filter.
 #pragma once
 
-#include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
+#include "renderer/gl/variants.h"
 #include "renderer/passes/directions.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/hit_light.h"
@@ -31,7 +31,7 @@ class GatherPass {
   void resize(glm::ivec2 map_size_px);
 
   /// Adds a batch of directions to `map`; the first batch starts it anew.
-  void run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+  void run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
            const Directions& directions, const OcclusionMap& occlusion, const Gathering& gathering, IndirectMap& map);
 
   /// Mean distance of a pixel's hits in the first batch, metres (R32F).
@@ -48,7 +48,7 @@ class GatherPass {
     gl::Uniform<int> first_batch;
     gl::Uniform<float> environment_share;
   };
-  Variant corrected_, literal_;
+  gl::Variants<Variant> variants_;
   gl::Texture occlusion_distance_, guide_;
 };
 

@@ -17,11 +17,12 @@ layout(local_size_x = 64) in;
 #include "shaders/hit_surface.glsl"
 #include "shaders/lights.glsl"
 #include "shaders/hit_list.glsl"
+#include "shaders/arriving.glsl"
 
 layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;  // 2 texels a ray
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit
-layout(binding = UNIT_WEIGHTS) uniform samplerBuffer weights;
-layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };
+layout(std430, binding = BINDING_ARRIVING) buffer Arriving { uvec4 arriving[]; };
+layout(std430, binding = BINDING_HIT_WEIGHTS) writeonly buffer HitWeights { vec4 hit_weights[]; };  // for further bounces
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 
@@ -59,9 +60,12 @@ void main() {
   const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, first).x), texelFetch(hit_words, first + 1).x,
                       texelFetch(hit_words, first + 2).x, uintBitsToFloat(texelFetch(hit_words, first + 3).x),
                       uintBitsToFloat(texelFetch(hit_words, first + 4).x));
-  vec3 radiance = light_of_hit(ray, hit);
-#ifndef LITERAL
-  radiance *= texelFetch(weights, int(index)).rgb;
+  const vec3 radiance = light_of_hit(ray, hit);
+#ifdef LITERAL
+  const vec3 weight = vec3(1.0);
+#else
+  const vec3 weight = color_of(arriving[index]);
 #endif
-  arriving[index] = vec4(radiance, hit.t);
+  hit_weights[gl_GlobalInvocationID.x] = vec4(weight, 0.0);
+  arriving[index] = pack_lit(radiance * weight, hit.t);
 }

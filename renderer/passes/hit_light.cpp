@@ -14,6 +14,7 @@ void OcclusionMap::resize(std::uint32_t most_rays) {
   hits.reserve(std::uint64_t{most_rays} * sizeof(Hit));
   hit_texels.attach(hits);
   list.resize(most_rays);
+  hit_weights.reserve(std::uint64_t{most_rays} * sizeof(glm::vec4));
 }
 
 HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
@@ -25,12 +26,12 @@ HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
 void HitLightPass::bind(const Directions& directions, const OcclusionMap& occlusion) const {
   directions.rays.bind_storage(BINDING_RAYS);
   directions.ray_texels.bind(UNIT_RAYS);
-  directions.weight_texels.bind(UNIT_WEIGHTS);
   directions.arriving.bind_storage(BINDING_ARRIVING);
   occlusion.hits.bind_storage(BINDING_HITS);
   occlusion.hit_texels.bind(UNIT_HITS);
   occlusion.list.dispatch.bind_storage(BINDING_HIT_DISPATCH);
   occlusion.list.texels.bind(UNIT_HIT_LIST);
+  occlusion.hit_weights.bind_storage(BINDING_HIT_WEIGHTS);
 }
 
 void HitLightPass::run(const DeviceScene& scene, const OcclusionMap& occlusion, const ShadowMaps& shadows, bool literal,

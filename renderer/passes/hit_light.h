@@ -20,14 +20,16 @@ struct OcclusionMap {
   gl::Buffer hits;                                 // Hit
   gl::BufferTexture hit_texels{"hits", GL_R32UI};  // the same, 5 texels a hit
   HitList list;
+  gl::Buffer hit_weights{"hit weights",
+                         0};  // vec4, in the order of the list: what the first bounce found in `arriving`
 };
 
 class HitLightPass {
  public:
   explicit HitLightPass(gl::ShaderLibrary& shaders);
 
-  /// Emission and reflected direct light of the hits takes the place of the environment in `directions`. `literal`:
-  /// weighted as Algorithm 2 prints it.
+  /// Emission and reflected direct light of the hits takes the place of the unlit rays' weights in `directions`.
+  /// `literal`: weighted as Algorithm 2 prints it.
   void run(const DeviceScene& scene, const OcclusionMap& occlusion, const ShadowMaps& shadows, bool literal,
            Directions& directions);
 

@@ -10,11 +10,12 @@ layout(local_size_x = 64) in;
 #include "shaders/g_buffer.glsl"
 #include "shaders/ray.glsl"
 #include "shaders/hit_list.glsl"
+#include "shaders/arriving.glsl"
 
 layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
-layout(binding = UNIT_WEIGHTS) uniform samplerBuffer weights;
-layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };
+layout(std430, binding = BINDING_ARRIVING) buffer Arriving { uvec4 arriving[]; };
+layout(std430, binding = BINDING_HIT_WEIGHTS) readonly buffer HitWeights { vec4 hit_weights[]; };
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_bounce;  // demodulated indirect map
 
 const float kDepthTolerance = 0.02;  // relative; a seen surface's own slope within a pixel stays below it
@@ -36,9 +37,9 @@ void main() {
   if (gl_GlobalInvocationID.x >= hit_count) return;
   const uint index = hit_ray(gl_GlobalInvocationID.x);
   const Hit hit = hits[index];
-  vec3 radiance = screen_radiance(rays[index].origin_ws + hit.t * rays[index].direction_ws);
-#ifndef LITERAL
-  radiance *= texelFetch(weights, int(index)).rgb;
-#endif
-  arriving[index] = vec4(radiance, hit.t);
+  const vec3 radiance = screen_radiance(rays[index].origin_ws + hit.t * rays[index].direction_ws);
+  // Directions made anew for this bounce have their weights still; else hit_light.comp has put them by.
+  const uvec4 before = arriving[index];
+  const vec3 weight = is_lit(before) ? hit_weights[gl_GlobalInvocationID.x].rgb : color_of(before);
+  arriving[index] = pack_lit(radiance * weight, hit.t);
 }

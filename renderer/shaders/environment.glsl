@@ -23,30 +23,17 @@ vec3 environment_direction(float column_uv, float up) {
   return vec3(sin_theta * sin(longitude), up, -sin_theta * cos(longitude));
 }
 
-struct Sky {
-  vec3 zenith_radiance, horizon_radiance, ground_radiance;
-  float strength;
-};
-
-// For loops: a software device would load the block anew at every turn.
-Sky load_sky() {
-  return Sky(environment.zenith_radiance.rgb, environment.horizon_radiance.rgb, environment.ground_radiance.rgb,
-             environment.horizon_radiance.w);
-}
-
-vec3 sky_radiance(Sky sky, vec3 direction_ws) {
+vec3 environment_radiance(vec3 direction_ws) {
 #ifdef HAS_ENVIRONMENT_IMAGE
   if (environment.ground_radiance.w > 0.5) {
-    return textureLod(environment_image, environment_uv(direction_ws), 0.0).rgb * sky.strength;
+    return textureLod(environment_image, environment_uv(direction_ws), 0.0).rgb * environment.horizon_radiance.w;
   }
 #endif
   const float up = direction_ws.y;
-  const vec3 above = mix(sky.horizon_radiance, sky.zenith_radiance, sqrt(max(up, 0.0)));
-  const vec3 below = mix(sky.horizon_radiance, sky.ground_radiance, smoothstep(0.0, 0.15, -up));
-  return (up >= 0.0 ? above : below) * sky.strength;
+  const vec3 sky = mix(environment.horizon_radiance.rgb, environment.zenith_radiance.rgb, sqrt(max(up, 0.0)));
+  const vec3 below = mix(environment.horizon_radiance.rgb, environment.ground_radiance.rgb, smoothstep(0.0, 0.15, -up));
+  return (up >= 0.0 ? sky : below) * environment.horizon_radiance.w;
 }
-
-vec3 environment_radiance(vec3 direction_ws) { return sky_radiance(load_sky(), direction_ws); }
 
 vec3 background_radiance(vec3 direction_ws) {
   return environment.background.w > 0.5 ? environment.background.rgb : environment_radiance(direction_ws);
