@@ -6,6 +6,7 @@
 #include <string>
 
 #include "renderer/gl/device.h"
+#include "server/command_line/bench_command.h"
 #include "server/command_line/compare_command.h"
 #include "server/command_line/devices_command.h"
 #include "server/command_line/render_command.h"
@@ -20,6 +21,7 @@ struct Arguments {
   RenderArguments render;
   DevicesArguments devices;
   CompareArguments compare;
+  BenchArguments bench;
 };
 
 constexpr const char* kFooter =
@@ -42,10 +44,12 @@ int parse_and_run(int argc, char** argv) {
   CLI::App& devices_app =
       *app.add_subcommand("devices", "List the OpenGL devices and say which one is chosen, and why");
   CLI::App& compare_app = *app.add_subcommand("compare", "Measure how far picture A is from the reference B");
+  CLI::App& bench_app = *app.add_subcommand("bench", "Measure this machine");
   add_serve_options(serve_app, arguments.serve);
   add_render_options(render_app, arguments.render);
   add_devices_options(devices_app, arguments.devices);
   add_compare_options(compare_app, arguments.compare);
+  add_bench_options(bench_app, arguments.bench);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -54,7 +58,8 @@ int parse_and_run(int argc, char** argv) {
   if (serve_app.parsed()) return serve(arguments.serve);
   if (render_app.parsed()) return run_render(arguments.render);
   if (devices_app.parsed()) return run_devices(arguments.devices);
-  return run_compare(arguments.compare);
+  if (compare_app.parsed()) return run_compare(arguments.compare);
+  return run_bench(bench_app, arguments.bench);
 }
 
 }  // namespace

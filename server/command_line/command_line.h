@@ -1,4 +1,4 @@
-// The program `lightwell`: serve, render, devices, compare.
+// The program `lightwell`: serve, render, devices, compare, bench.
 #pragma once
 
 namespace lightwell {

@@ -37,24 +37,12 @@ void add_transport_options(CLI::App& app, Settings& settings) {
   add_named(app, "--method", settings.method, {Method::kThesis, Method::kRealtime, Method::kReference},
             method_from_name, "How light is found");
   add_integer(app, "--samples", settings.samples, 1, 4096, "Directions per pixel of the indirect map");
-  add_parsed(app, "--bounces", settings.bounces, parse_bounces, "N",
-             "0: direct light only, 1: the first bounce, ... 64; inf: no limit, with the method reference",
-             std::to_string(settings.bounces));
   add_integer(app, "--indirect-size", settings.indirect_size, 8, 4096,
               "The longer side of the map in which indirect light is found, in pixels");
-  add_named(app, "--estimator", settings.estimator, {Estimator::kCorrected, Estimator::kLiteral}, estimator_from_name,
-            "The thesis' sum over directions: unbiased, or to the letter");
-  add_integer(app, "--shadow-size", settings.shadow_size, 64, 4096, "A shadow map's side in pixels");
-  add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
-             "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));
-  app.add_flag("--denoise,!--no-denoise", settings.denoise, "Smooth the indirect light within surfaces");
-  app.add_flag("--multiple-scattering,!--no-multiple-scattering", settings.multiple_scattering,
-               "Keep the light that bounces between the microfacets of rough surfaces");
+  add_thesis_options(app, settings);
   add_named(app, "--light-strategy", settings.light_strategy,
             {LightStrategy::kBoth, LightStrategy::kLights, LightStrategy::kRays}, light_strategy_from_name,
             "How reference finds lights that have a size: by samples of them, by rays that hit them, or by both");
-  add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
-              "Start of the random sequence: the same seed gives the same picture");
 }
 
 void add_display_options(CLI::App& app, Settings& settings) {
@@ -77,6 +65,22 @@ void add_display_options(CLI::App& app, Settings& settings) {
 }
 
 }  // namespace
+
+void add_thesis_options(CLI::App& app, Settings& settings) {
+  add_parsed(app, "--bounces", settings.bounces, parse_bounces, "N",
+             "0: direct light only, 1: the first bounce, ... 64; inf: no limit, with the method reference",
+             std::to_string(settings.bounces));
+  add_named(app, "--estimator", settings.estimator, {Estimator::kCorrected, Estimator::kLiteral}, estimator_from_name,
+            "The thesis' sum over directions: unbiased, or to the letter");
+  add_integer(app, "--shadow-size", settings.shadow_size, 64, 4096, "A shadow map's side in pixels");
+  add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
+             "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));
+  app.add_flag("--denoise,!--no-denoise", settings.denoise, "Smooth the indirect light within surfaces");
+  app.add_flag("--multiple-scattering,!--no-multiple-scattering", settings.multiple_scattering,
+               "Keep the light that bounces between the microfacets of rough surfaces");
+  add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
+              "Start of the random sequence: the same seed gives the same picture");
+}
 
 void add_settings_options(CLI::App& app, Settings& settings) {
   app.option_defaults()->group("Light");

@@ -81,11 +81,11 @@ class HelpTest(CommandLineTest):
         self.assertIn("Exit codes", self.run_lightwell("--help").stdout)
         self.assertIn("lightwell ", self.run_lightwell("--version").stdout)
         for command, option in [("serve", "--port"), ("render", "--indirect-size"), ("devices", "--json"),
-                                ("compare", "--heatmap")]:
+                                ("compare", "--heatmap"), ("bench", "thesis")]:
             self.assertIn(option, self.run_lightwell(command, "--help").stdout)
 
     def test_wrong_commands(self):
-        for arguments in [[], ["paint"], ["--nonsense"], ["devices", "extra"], ["serve", "a.glb", "b.glb"]]:
+        for arguments in [[], ["paint"], ["--nonsense"], ["devices", "extra"], ["bench"], ["bench", "none"], ["serve", "a.glb", "b.glb"]]:
             self.run_lightwell(*arguments, code=WRONG_USAGE)
 
 

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""The commands that make the thesis' tables and figures anew, as their users call them, at a tiny size.
+
+usage: thesis_commands_test.py PATH_OF_LIGHTWELL [unittest's arguments]
+"""
+
+import json
+import unittest
+import xml.etree.ElementTree
+
+from command_line_test import CommandLineTest, FAILED, WRONG_USAGE
+
+
+class BenchThesisTest(CommandLineTest):
+    def bench(self, *arguments, **keywords):
+        return self.run_lightwell("bench", "thesis", "--side", "64", "--frames", "2", *arguments, **keywords)
+
+    def test_rows_and_cost_as_text_json_and_plot(self):
+        run = self.bench("--rows", "1,21", "--most-triangles", "6000", "--json", "b.json", "--plot", "b.svg")
+        for part in ["Table 6.1", "Table 6.2", "11.98", "8.53", "2 rows", "Cost against triangles", "5832"]:
+            self.assertIn(part, run.stdout)
+        found = json.loads((self.folder / "b.json").read_text())
+        self.assertEqual([(1, 64), (21, 16)], [(row["row"], row["indirect_size"]) for row in found["rows"]])
+        for row in found["rows"]:
+            self.assertEqual(2, row["frames"])
+            self.assertAlmostEqual(row["ratio"], row["frames_per_s"] / row["printed_frames_per_s"])
+            pixels = row["indirect_size"] ** 2
+            self.assertAlmostEqual(row["rays_resolved_per_s"], pixels * row["samples"] * row["frames_per_s"], delta=1)
+            self.assertGreaterEqual(row["rays_resolved_per_s"], row["rays_traced_per_s"])
+            self.assertGreater(row["rays_traced_per_s"], 0)
+            self.assertIn("trace", [stage["name"] for stage in row["stages"]])
+        self.assertEqual([1458, 5832], [one["triangles"] for one in found["cost_against_triangles"]])
+        curves = xml.etree.ElementTree.parse(self.folder / "b.svg").findall(".//{*}polyline")
+        self.assertEqual(6, len(curves))
+
+    def test_a_spent_budget_leaves_one_frame(self):
+        self.bench("--rows", "3", "--most-triangles", "0", "--budget", "0", "--json", "b.json")
+        found = json.loads((self.folder / "b.json").read_text())
+        self.assertEqual([1], [row["frames"] for row in found["rows"]])
+        self.assertEqual([], found["cost_against_triangles"])
+
+    def test_settings_reach_the_renderer(self):
+        self.bench("--rows", "3", "--most-triangles", "0", "--bounces", "0", "--json", "b.json")
+        row = json.loads((self.folder / "b.json").read_text())["rows"][0]
+        self.assertEqual(0, row["rays_traced_per_s"])
+
+    def test_wrong_usage(self):
+        for wrong in [["--rows", "37"], ["--rows", "x"], ["--side", "31"], ["--frames", "0"], ["--budget", "-1"],
+                      ["--plot", "b.png"], ["--samples", "4"], ["--bounces", "inf"],
+                      ["--tracer", "magic"], ["--most-triangles", "-1"]]:
+            run = self.bench(*wrong, code=WRONG_USAGE)
+            self.assertIn(wrong[0], run.stderr)
+        self.assertIn("none", self.bench("--json", "none/b.json", code=FAILED).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
