@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <unordered_map>
 
 #include "renderer/check.h"
@@ -107,7 +108,11 @@ void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multipl
   const bool points = std::any_of(pose.lights.begin(), pose.lights.end(),
                                   [](const PlacedLight& placed) { return placed.light.kind == LightKind::kPoint; });
   texture_defines_.clear();
-  if (has_textures_ || has_all_textures_) texture_defines_.emplace_back("HAS_TEXTURES 1");
+  if (has_textures_ || has_all_textures_) {
+    const SceneTextures& textures = *textures_.front();
+    texture_defines_ = {"HAS_TEXTURES 1", "COLOR_CLASSES " + std::to_string(textures.size_classes(true)),
+                        "DATA_CLASSES " + std::to_string(textures.size_classes(false))};
+  }
   if (has_all_textures_) texture_defines_.emplace_back("ALL_TEXTURES 1");
   light_defines_ = {pose.lights.size() > 2    ? "MANY_LIGHTS 1"
                     : pose.lights.size() == 2 ? "TWO_LIGHTS 1"

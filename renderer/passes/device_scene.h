@@ -59,7 +59,7 @@ class DeviceScene {
   void bind() const;
 
   /// What the shaders of this scene must be able to do, as defines. Textures: HAS_TEXTURES for base colours and vertex
-  /// colours, ALL_TEXTURES as well for anything else. Lights: see shaders/lights.glsl.
+  /// colours, ALL_TEXTURES as well for anything else, and the sizes in use. Lights: see shaders/lights.glsl.
   const gl::Defines& texture_defines() const { return texture_defines_; }
   const gl::Defines& light_defines() const { return light_defines_; }
   /// MULTISCATTER, and HAS_LOBES where a material has clearcoat, sheen, transmission or a specular colour.

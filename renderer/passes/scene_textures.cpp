@@ -165,6 +165,13 @@ std::uint32_t SceneTextures::slot(const TextureUse& use, bool srgb) const {
          (use.uv_set == 1 ? 1u << 21 : 0u);
 }
 
+std::uint32_t SceneTextures::size_classes(bool srgb) const {
+  std::uint32_t classes = 0;
+  for (const Layer& layer : layers_)
+    if (layer.srgb == srgb) classes |= 1u << layer.size_class;
+  return classes;
+}
+
 bool SceneTextures::fits(const Scene& scene) const {
   return images_ == scene.images && same_samplers(textures_, scene.textures) && uses_ == texture_uses(scene);
 }

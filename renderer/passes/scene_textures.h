@@ -20,6 +20,9 @@ class SceneTextures {
   /// What `Material`'s shader struct stores: 0 for none, else array, layer and sampler in bits (shaders/textures.glsl).
   std::uint32_t slot(const TextureUse& use, bool srgb) const;
 
+  /// Which of the sizes have a texture, a bit each.
+  std::uint32_t size_classes(bool srgb) const;
+
   /// True if this was built for just these images and textures.
   bool fits(const Scene& scene) const;
 

@@ -1,6 +1,14 @@
 // Material textures: all images of a scene in arrays of four sizes, sRGB-coded and linear ones apart, so that any hit
 // can read any texture. Wrapping and nearest filtering are done here, since one array holds textures of every sampler.
 // Needs passes/bindings.glsl and shaders/scene_data.glsl.
+// COLOR_CLASSES and DATA_CLASSES say, a bit each, which sizes a scene has: a software device samples all that may be
+// sampled.
+#ifndef COLOR_CLASSES
+#define COLOR_CLASSES 15
+#endif
+#ifndef DATA_CLASSES
+#define DATA_CLASSES 15
+#endif
 
 layout(binding = UNIT_TEXTURES_SRGB) uniform sampler2DArray srgb_textures[TEXTURE_CLASSES];
 layout(binding = UNIT_TEXTURES_LINEAR) uniform sampler2DArray linear_textures[TEXTURE_CLASSES];
@@ -41,24 +49,29 @@ TextureLookup texture_lookup(TextureUse use, vec2 uv0, vec2 uv1, vec2 footprint)
   return lookup;
 }
 
+// `texel` becomes what is sampled from one of the arrays. The first that the scene has needs no test.
+#define SAMPLE_CLASS(textures, classes, size_class)                                          \
+  if ((classes & (1 << size_class)) != 0 &&                                                  \
+      ((classes & ((1 << size_class) - 1)) == 0 || (lookup.array & 3u) == uint(size_class))) \
+    texel = textureLod(textures[size_class], lookup.position, lookup.lod);
+#define SAMPLE_CLASSES(textures, classes) \
+  SAMPLE_CLASS(textures, classes, 0)      \
+  SAMPLE_CLASS(textures, classes, 1)      \
+  SAMPLE_CLASS(textures, classes, 2)      \
+  SAMPLE_CLASS(textures, classes, 3)
+
 // Colours, decoded from sRGB before filtering.
 vec4 sample_color_texture(TextureUse use, vec2 uv0, vec2 uv1, vec2 footprint) {
   const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
-  switch (lookup.array & 3u) {
-    case 0u: return textureLod(srgb_textures[0], lookup.position, lookup.lod);
-    case 1u: return textureLod(srgb_textures[1], lookup.position, lookup.lod);
-    case 2u: return textureLod(srgb_textures[2], lookup.position, lookup.lod);
-    default: return textureLod(srgb_textures[3], lookup.position, lookup.lod);
-  }
+  vec4 texel = vec4(0.0);
+  SAMPLE_CLASSES(srgb_textures, COLOR_CLASSES)
+  return texel;
 }
 
 // Data, as it is stored.
 vec4 sample_data_texture(TextureUse use, vec2 uv0, vec2 uv1, vec2 footprint) {
   const TextureLookup lookup = texture_lookup(use, uv0, uv1, footprint);
-  switch (lookup.array & 3u) {
-    case 0u: return textureLod(linear_textures[0], lookup.position, lookup.lod);
-    case 1u: return textureLod(linear_textures[1], lookup.position, lookup.lod);
-    case 2u: return textureLod(linear_textures[2], lookup.position, lookup.lod);
-    default: return textureLod(linear_textures[3], lookup.position, lookup.lod);
-  }
+  vec4 texel = vec4(0.0);
+  SAMPLE_CLASSES(linear_textures, DATA_CLASSES)
+  return texel;
 }
