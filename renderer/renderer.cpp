@@ -178,9 +178,13 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     state_->timer.mark("scene");
 
     FrameContext context{
-        state_->device_scene, pose,         request.settings, request.size_px, view.accumulated, request.accumulate,
-        *state_->tracer,      state_->timer};
+        state_->device_scene, pose,          request.settings,   request.size_px, view.accumulated, request.accumulate,
+        *state_->tracer,      state_->timer, request.is_unwanted};
     const Picture& picture = paths ? view.reference().render(context, scene) : view.thesis().render(context);
+    if (context.abandoned) {
+      view.accumulated = 0;
+      return Error{ErrorKind::kInternal, "frame", "it was wanted no more"};
+    }
     view.display.resize(request.size_px);
     view.display.measure_exposure(picture, view.exposed && view.accumulated == 0 ? kExposureSmoothing : 1.0f);
     view.exposed = true;

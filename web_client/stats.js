@@ -101,8 +101,8 @@ export class Stats {
   summary() {
     if (!this.frame) return "Waiting for the first picture";
     const frames = this.server?.accumulated ?? 1;
-    if (this.frame.header.is_final) return frames > 1 ? `Final, ${frames} frames` : "Final";
-    if (frames > 1) return `Refining, ${frames} frames`;
+    if (this.frame.header.is_final) return frames > 1 ? `Final, ${frames} samples` : "Final";
+    if (frames > 1) return `Refining, ${frames} samples`;
     const latency = this.latency_ms === null ? "" : ` · ${short_ms(this.latency_ms)} ms`;
     return `${Math.round(this.frame_rate())} fps${latency}`;
   }

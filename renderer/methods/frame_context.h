@@ -17,7 +17,9 @@ struct FrameContext {
   bool accumulate;
   Tracer& tracer;
   gl::StageTimer& timer;
-  std::uint64_t rays = 0;  // traced in this frame, counted by the method
+  const std::function<bool()>& is_unwanted;  // may be empty
+  std::uint64_t rays = 0;                    // traced in this frame, counted by the method
+  bool abandoned = false;                    // the picture is not complete: it was wanted no more
 };
 
 }  // namespace lightwell

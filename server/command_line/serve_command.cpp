@@ -89,6 +89,10 @@ void add_serve_options(CLI::App& app, ServeOptions& options) {
   app.add_option("--web-client", options.web_client_dir, "Serve the viewer from this folder, not from the binary")
       ->check(CLI::ExistingDirectory);
   add_integer(app, "--quality", options.quality, 1, 100, "JPEG quality while the picture moves");
+  add_parsed(
+      app, "--reference-after", options.reference_after_s,
+      [](const std::string& text) { return parse_number(text, 0.0, 1e6); }, "SECONDS",
+      "A session that stands still for so long goes over into the method reference; 0: never", "10");
   add_device_options(app, options.device, options.tracer);
   add_settings_options(app, options.settings);
   add_parsed(

@@ -1,5 +1,7 @@
 #include "server/services.h"
 
+#include <cmath>
+
 namespace lightwell {
 namespace {
 
@@ -21,6 +23,7 @@ Response create_session(const Services& services, std::string_view body) {
   if (!session) return http::problem_response(session.problem());
   DirectorOptions options;
   options.quality = services.options.quality;
+  options.still_before_reference = std::chrono::milliseconds(std::llround(services.options.reference_after_s * 1000.0));
   services.render_loop.add(std::make_shared<Director>(*session, services.encoders, options), Share::kOwn);
   Response response = http::json_response(201, protocol::to_json((*session)->describe()));
   response.headers.emplace_back("Location", services.options.base_path + "/v1/sessions/" + (*session)->id());

@@ -10,6 +10,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
+// Of the method reference in a picture shown in place of another method's: with fewer it would be noisier.
+constexpr std::uint32_t kFewestReferenceFrames = 32;
 constexpr int kSmallPicture = 256 * 256;  // pixels: halved chroma saves little and shows
 
 }  // namespace
@@ -25,8 +27,18 @@ SteadyTime Director::due_at(SteadyTime now) {
   if (!take_.state || state->revision != take_.state->revision)
     return take_.kind == Kind::kFresh ? next_frame : now;  // refining gives way at once
   if (state->moving()) return next_frame;
-  if (accumulated_ >= options_.refining_frames) return kNever;
-  return still_since_ + options_.still_before_refining;
+  if (accumulated_ < frames_wanted()) return still_since_ + options_.still_before_refining;
+  return goes_over_into_reference() ? still_since_ + options_.still_before_reference : kNever;
+}
+
+bool Director::goes_over_into_reference() const {
+  return options_.still_before_reference.count() > 0 && !in_reference_ &&
+         take_.request.settings.method != Method::kReference;
+}
+
+std::uint32_t Director::frames_wanted() const {
+  const bool reference = in_reference_ || take_.request.settings.method == Method::kReference;
+  return reference ? options_.reference_frames : options_.refining_frames;
 }
 
 Result<Shot> Director::take_shot(SteadyTime now) {
@@ -37,12 +49,17 @@ Result<Shot> Director::take_shot(SteadyTime now) {
   take_.start = now;
   ++in_the_making_;
   if (take_.kind == Kind::kFresh) return take_fresh_shot();
+  if (accumulated_ >= frames_wanted()) {  // the method's own final picture has stood long enough
+    in_reference_ = true;
+    accumulated_ = 0;
+  }
   return take_refining_shot();
 }
 
 Result<Shot> Director::take_fresh_shot() {
   const SessionState& state = *take_.state;
   still_since_ = take_.start;
+  in_reference_ = false;
   FrameRequest request;
   request.time_s = state.clock.time_s(take_.start);
   request.size_px = state.size_px;
@@ -59,10 +76,15 @@ Result<Shot> Director::take_fresh_shot() {
 /// The very same again, added to what is there. Pictures are shown at every doubling: each then has visibly less noise.
 Shot Director::take_refining_shot() {
   const std::uint32_t frames = accumulated_ + 1;
-  take_.is_final = frames >= options_.refining_frames;
-  take_.shown = take_.is_final || std::has_single_bit(frames);
+  take_.is_final = frames >= frames_wanted();
+  const bool too_noisy = in_reference_ && frames < kFewestReferenceFrames;
+  take_.shown = take_.is_final || (std::has_single_bit(frames) && !too_noisy);
   FrameRequest request = take_.request;
-  request.accumulate = true;
+  if (in_reference_) request.settings.method = Method::kReference;
+  request.accumulate = accumulated_ > 0;
+  request.is_unwanted = [session = session_, revision = take_.state->revision] {
+    return session->state()->revision != revision;
+  };
   request.want_display = take_.shown;
   return Shot{take_.state->stage->scene(), std::move(request)};
 }
@@ -71,6 +93,7 @@ void Director::shot_done(Result<Frame> frame) {
   if (!frame) {
     --in_the_making_;
     accumulated_ = 0;
+    if (session_->state()->revision != take_.state->revision) return;  // given up, for it is out of date
     failed_revision_ = take_.state->revision;
     return session_->audience().report(problem_of(frame.error()));
   }

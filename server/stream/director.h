@@ -13,9 +13,11 @@ namespace lightwell {
 
 struct DirectorOptions {
   std::chrono::milliseconds still_before_refining{200};
-  std::chrono::microseconds least_frame_time{16'600};  // no more than 60 pictures a second
-  std::uint32_t refining_frames = 64;                  // in the final picture
-  int quality = 80;                                    // JPEG, while the picture changes
+  std::chrono::microseconds least_frame_time{16'600};   // no more than 60 pictures a second
+  std::uint32_t refining_frames = 64;                   // in the final picture
+  std::chrono::milliseconds still_before_reference{0};  // then the method reference takes over; 0: never
+  std::uint32_t reference_frames = 1024;                // in its final picture
+  int quality = 80;                                     // JPEG, while the picture changes
   int final_quality = 95;
 };
 
@@ -52,6 +54,8 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
     bool is_final = false;
   };
 
+  bool goes_over_into_reference() const;
+  std::uint32_t frames_wanted() const;
   Result<Shot> take_fresh_shot();
   Shot take_refining_shot();
   void encode(Frame frame);
@@ -64,6 +68,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   Take take_;
   SteadyTime still_since_{};       // the last picture that showed a change
   std::uint32_t accumulated_ = 0;  // frames in the picture
+  bool in_reference_ = false;      // the picture is made by the method reference, whatever the session's is
   std::uint64_t failed_revision_ = 0;
   std::uint64_t next_number_ = 1;
   std::atomic<int> in_the_making_ = 0;  // pictures rendered or to be, that viewers have not got yet

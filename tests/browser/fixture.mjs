@@ -17,9 +17,9 @@ export const kLaptop = { viewport: { width: 1280, height: 720 } };
 export const kPhone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 3, isMobile: true, hasTouch: true };
 
 export class Fixture {
-  /** @param {string[]} options of `lightwell serve` */
+  /** @param {string[]} options of `lightwell serve`; unless they say otherwise, a final picture stays */
   constructor(options = []) {
-    this.options = options;
+    this.options = options.includes("--reference-after") ? options : [...options, "--reference-after", "0"];
   }
 
   async start() {

@@ -118,6 +118,32 @@ TEST_F(StreamTest, RefinesWhatStandsStillAndThenRests) {
   EXPECT_EQ(next->input_seq, 1u);
 }
 
+ServeOptions soon_in_reference() {
+  ServeOptions options = test_options();
+  options.reference_after_s = 0.5;
+  return options;
+}
+
+class ReferenceStreamTest : public ServerTest {
+ protected:
+  ReferenceStreamTest() : ServerTest(soon_in_reference()) {}
+};
+
+TEST_F(ReferenceStreamTest, WhatStandsStillForLongGoesOverIntoReferenceAndBackAtOnce) {
+  StreamClient client(server_.port(), make_session());
+  client.hello();
+  ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.is_final; }));
+  EXPECT_EQ(studio_->requests().back().settings.method, Method::kThesis);
+  const auto refined = client.next_frame();  // the first with enough samples
+  ASSERT_TRUE(refined);
+  EXPECT_FALSE(refined->is_final);
+  EXPECT_EQ(studio_->requests().back().settings.method, Method::kReference);
+  client.input(1, {{"camera", free_camera(1)}});
+  ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.input_seq == 1; }));
+  EXPECT_EQ(studio_->requests().back().settings.method, Method::kThesis);
+  EXPECT_FALSE(studio_->requests().back().accumulate);
+}
+
 TEST_F(StreamTest, AnyInputAbortsRefinement) {
   studio_->render_ms = 30;  // 64 of them take two seconds
   StreamClient client(server_.port(), make_session());

@@ -1,0 +1,28 @@
+// A session that stands still goes over into the method reference, and comes back at a touch.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { Fixture } from "./fixture.mjs";
+
+const fixture = new Fixture([
+  "builtin:cornell", "--samples", "4", "--bounces", "1", "--no-denoise", "--indirect-size", "64", "--reference-after", "1",
+]);
+let viewer, page;
+
+before(async () => {
+  ({ viewer, page } = await fixture.start());
+});
+
+after(() => fixture.stop());
+
+const status = () => page.textContent("#status-text");
+
+test("the final picture is refined by reference, and a drag ends that at once", async () => {
+  await page.keyboard.press("Space");
+  await viewer.final_picture();
+  const { frame } = await viewer.stage();
+  await viewer.until("pictures by reference", () => viewer.stage(), (stage) => stage.frame > frame && stage.final !== "true");
+  await viewer.until("the samples to be told", status, (text) => /Refining, \d+ samples/.test(text));
+  await fixture.keep("desktop-reference");
+  await fixture.pictures_around(() => viewer.drag({ x: 500, y: 450 }, { x: 560, y: 460 }));
+  assert.deepEqual(viewer.errors, []);
+});
