@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/image_io/environment_file.h"
 #include "renderer/renderer.h"
 #include "server/access/access_control.h"
 
@@ -36,6 +37,7 @@ inline Settings viewing_settings() {
 
 struct ServeOptions {
   std::string scene = "builtin:atrium";    // a path to .glb or .gltf, or builtin:NAME; what the viewer opens with
+  EnvironmentChoice environment;           // for `scene`; files are the operator's to name, no client can
   std::string host = "127.0.0.1";          // the address to listen on
   int port = 8080;                         // 0: any free port
   std::string device;                      // as gl::DeviceChoice::request

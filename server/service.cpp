@@ -117,7 +117,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
 
 void Service::State::load_scenes() {
   try {
-    const Result<std::string> name = scenes.add_from_command_line(options.scene);
+    const Result<std::string> name = scenes.add_from_command_line(options.scene, options.environment);
     if (!name) throw SceneRefused(name.error().message());
     first_scene_promise.set_value(*name);
     scenes.add_builtin_scenes();

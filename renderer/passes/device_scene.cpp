@@ -108,17 +108,20 @@ void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multipl
   const bool points = std::any_of(pose.lights.begin(), pose.lights.end(),
                                   [](const PlacedLight& placed) { return placed.light.kind == LightKind::kPoint; });
   texture_defines_.clear();
-  if (has_textures_ || has_all_textures_) {
+  // What has lobes is rare enough to be spared variants of its own without textures.
+  if (has_textures_ || has_all_textures_ || has_lobes_) {
     const SceneTextures& textures = *textures_.front();
     texture_defines_ = {"HAS_TEXTURES 1", "COLOR_CLASSES " + std::to_string(textures.size_classes(true)),
                         "DATA_CLASSES " + std::to_string(textures.size_classes(false))};
   }
-  if (has_all_textures_) texture_defines_.emplace_back("ALL_TEXTURES 1");
+  if (has_all_textures_ || has_lobes_) texture_defines_.emplace_back("ALL_TEXTURES 1");
+  lobe_defines_.clear();
+  if (has_lobes_) lobe_defines_.emplace_back("HAS_LOBES 1");
   light_defines_ = {pose.lights.size() > 2    ? "MANY_LIGHTS 1"
                     : pose.lights.size() == 2 ? "TWO_LIGHTS 1"
                                               : "ONE_LIGHT 1"};
   if (points) light_defines_.emplace_back("POINT_LIGHTS 1");
-  brdf_defines_.clear();
+  brdf_defines_ = lobe_defines_;
   if (multiple_scattering) brdf_defines_.emplace_back("MULTISCATTER 1");
   environment_defines_.clear();
   if (scene.environment.image) environment_defines_.emplace_back("HAS_ENVIRONMENT_IMAGE 1");
@@ -165,6 +168,7 @@ void DeviceScene::upload_materials(const Scene& scene) {
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
   has_textures_ = has_all_textures_ = has_coverage_ = false;
+  has_lobes_ = std::any_of(scene.materials.begin(), scene.materials.end(), lightwell::has_lobes);
   for (const DeviceMaterial& material : packed) {
     has_textures_ |= material.base_color_texture.slot != 0;
     has_all_textures_ |=

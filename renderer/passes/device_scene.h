@@ -64,6 +64,8 @@ class DeviceScene {
   const gl::Defines& light_defines() const { return light_defines_; }
   /// MULTISCATTER, and HAS_LOBES where a material has clearcoat, sheen, transmission or a specular colour.
   const gl::Defines& brdf_defines() const { return brdf_defines_; }
+  const gl::Defines& lobe_defines() const { return lobe_defines_; }  // HAS_LOBES alone
+  bool has_lobes() const { return has_lobes_; }
   const gl::Defines& environment_defines() const { return environment_defines_; }
   /// Alpha masks or blends.
   bool has_coverage() const { return has_coverage_; }
@@ -99,8 +101,8 @@ class DeviceScene {
   gl::BufferTexture vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
   GLuint vertex_array_ = 0;
   Draws draws_[3];
-  bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false;
-  gl::Defines texture_defines_, light_defines_, brdf_defines_, environment_defines_;
+  bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false;
+  gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_;
   std::uint64_t triangles_ = 0;
 };
 

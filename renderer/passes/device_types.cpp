@@ -39,6 +39,41 @@ DeviceTextureUse pack_use(const TextureUse& use, bool srgb, const SceneTextures&
   return packed;
 }
 
+// Reflectance at normal incidence, from air; KHR_materials_ior lets 0 stand for all of it.
+float f0_of(float ior) {
+  const float ratio = (ior - 1.0f) / (ior + 1.0f);
+  return ratio * ratio;
+}
+
+// The coefficient by which Beer's law gives the colour at the distance: KHR_materials_volume. What a colour of 0 leaves
+// is less than a float can tell from nothing.
+glm::vec3 absorption_per_m(const Material& material) {
+  if (!(material.attenuation_distance > 0.0f)) return glm::vec3(0.0f);
+  return -glm::log(glm::max(material.attenuation_color, glm::vec3(1e-30f))) / material.attenuation_distance;
+}
+
+void pack_lobes(const Material& material, const SceneTextures& textures, DeviceMaterial& packed) {
+  const float f0 = f0_of(material.ior);
+  packed.f0_dielectric_color = glm::min(f0 * material.specular_color_factor, glm::vec3(1e6f));
+  packed.transmission = material.transmission_factor;
+  packed.sheen_color = material.sheen_color_factor;
+  packed.sheen_roughness = material.sheen_roughness;
+  packed.clearcoat = material.clearcoat_factor;
+  packed.clearcoat_roughness = material.clearcoat_roughness;
+  packed.clearcoat_normal_scale = material.clearcoat_normal_scale;
+  const bool volume = material.thickness_factor > 0.0f && material.transmission_factor > 0.0f;
+  packed.ior = volume ? std::max(material.ior, 1.0f) : 0.0f;
+  packed.absorption = volume ? absorption_per_m(material) : glm::vec3(0.0f);
+  packed.specular_texture = pack_use(material.specular_texture, false, textures);
+  packed.specular_color_texture = pack_use(material.specular_color_texture, true, textures);
+  packed.transmission_texture = pack_use(material.transmission_texture, false, textures);
+  packed.clearcoat_texture = pack_use(material.clearcoat_texture, false, textures);
+  packed.clearcoat_roughness_texture = pack_use(material.clearcoat_roughness_texture, false, textures);
+  packed.clearcoat_normal_texture = pack_use(material.clearcoat_normal_texture, false, textures);
+  packed.sheen_color_texture = pack_use(material.sheen_color_texture, true, textures);
+  packed.sheen_roughness_texture = pack_use(material.sheen_roughness_texture, false, textures);
+}
+
 }  // namespace
 
 std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed) {
@@ -90,6 +125,12 @@ DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t f
   return packed;
 }
 
+bool has_lobes(const Material& material) {
+  return material.clearcoat_factor > 0.0f || material.sheen_color_factor != glm::vec3(0.0f) ||
+         material.transmission_factor > 0.0f || material.specular_color_factor != glm::vec3(1.0f) ||
+         material.specular_texture.texture >= 0 || material.specular_color_texture.texture >= 0;
+}
+
 DeviceMaterial pack_material(const Material& material, const SceneTextures& textures) {
   DeviceMaterial packed{};
   packed.base_color = material.base_color_factor;
@@ -97,8 +138,10 @@ DeviceMaterial pack_material(const Material& material, const SceneTextures& text
   packed.normal_scale = material.normal_scale;
   packed.metallic = material.metallic_factor;
   packed.roughness = material.roughness_factor;
-  const float ratio = (material.ior - 1.0f) / (material.ior + 1.0f);
-  packed.f0_dielectric = ratio * ratio;
+  const float f0 = f0_of(material.ior);
+  packed.f0_dielectric = std::min(f0 * std::max({material.specular_color_factor.r, material.specular_color_factor.g,
+                                                 material.specular_color_factor.b}),
+                                  1.0f);
   packed.specular_factor = material.specular_factor;
   packed.flags = (material.alpha_mode == AlphaMode::kMask ? kDeviceMaterialMask : 0u) |
                  (material.alpha_mode == AlphaMode::kBlend ? kDeviceMaterialBlend : 0u) |
@@ -109,6 +152,7 @@ DeviceMaterial pack_material(const Material& material, const SceneTextures& text
   packed.metallic_roughness_texture = pack_use(material.metallic_roughness_texture, false, textures);
   packed.normal_texture = pack_use(material.normal_texture, false, textures);
   packed.emissive_texture = pack_use(material.emissive_texture, true, textures);
+  pack_lobes(material, textures, packed);
   return packed;
 }
 

@@ -64,14 +64,35 @@ struct DeviceMaterial {
   DeviceTextureUse metallic_roughness_texture;
   DeviceTextureUse normal_texture;
   DeviceTextureUse emissive_texture;
+  // What shaders/lobes.glsl reads.
+  glm::vec3 f0_dielectric_color;
+  float transmission;
+  glm::vec3 sheen_color;
+  float sheen_roughness;
+  float clearcoat;
+  float clearcoat_roughness;
+  float clearcoat_normal_scale;
+  float ior;             // of a volume; 0: thin-walled
+  glm::vec3 absorption;  // of the volume, 1 / m
+  float lobes_padding;
+  DeviceTextureUse specular_texture;
+  DeviceTextureUse specular_color_texture;
+  DeviceTextureUse transmission_texture;
+  DeviceTextureUse clearcoat_texture;
+  DeviceTextureUse clearcoat_roughness_texture;
+  DeviceTextureUse clearcoat_normal_texture;
+  DeviceTextureUse sheen_color_texture;
+  DeviceTextureUse sheen_roughness_texture;
 };
-static_assert(sizeof(DeviceMaterial) == 192);
+static_assert(sizeof(DeviceMaterial) == 512);
 
 /// `deformed` replaces positions, normals and tangents where it is not null.
 std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed);
 std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive, const DeformedVertices* deformed);
 DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_vertex,
                              std::uint32_t first_triangle, std::uint32_t material);
+/// True if a material needs more than the plain BRDF.
+bool has_lobes(const Material& material);
 DeviceMaterial pack_material(const Material& material, const SceneTextures& textures);
 
 }  // namespace lightwell

@@ -33,18 +33,22 @@ void main() {
   const int place = int(slot) / 16 % 16;
   const mat3 frame = frame_around(point.normal_ws);
   const vec3 out_direction = point.to_camera_ws * frame;
-  const vec3 origin_ws = point.position_ws + point.geometric_normal_ws * ray_offset_m(point);
+  const Brdf brdf = brdf_in_frame(point.brdf, frame);
+  const vec3 lift_ws = point.geometric_normal_ws * ray_offset_m(point);
 
   for (uint j = first; j < min(first + kDirectionsPerInvocation, direction_count); ++j) {
     const vec3 u = texelFetch(sample_points, int(16u * j) + place).xyz;
-    const vec3 in_direction = sample_brdf(point.brdf, out_direction, u.xy, u.z);
+    const vec3 in_direction = sample_brdf(brdf, out_direction, u.xy, u.z);
     const vec3 in_ws = frame * in_direction;
-    const float pdf = brdf_pdf(point.brdf, out_direction, in_direction);
-    const bool active_ray = inside && point.valid && pdf > 0.0 && dot(in_ws, point.geometric_normal_ws) > 0.0;
+    const float pdf = brdf_pdf(brdf, out_direction, in_direction);
+    // Light that passes the surface comes from below both normals, what is reflected from above both.
+    const bool below = in_direction.z < 0.0;
+    const bool agree = (dot(in_ws, point.geometric_normal_ws) < 0.0) == below;
+    const bool active_ray = inside && point.valid && pdf > 0.0 && agree;
     const vec3 weight =
-        active_ray ? brdf_times_cosine(point.brdf, out_direction, in_direction) / max(pdf, 1e-20) : vec3(0.0);
+        active_ray ? brdf_times_cosine(brdf, out_direction, in_direction) / max(pdf, 1e-20) : vec3(0.0);
     const uint ray = j * slot_count + slot;
-    rays[ray].origin_ws = origin_ws;  // t_min stays 0
+    rays[ray].origin_ws = point.position_ws + (below ? -lift_ws : lift_ws);  // t_min stays 0
     rays[ray].direction_ws = in_ws;
     rays[ray].t_max = active_ray ? 1e30 : -1.0;
     arriving[ray] = pack_unlit(weight, in_ws);

@@ -9,6 +9,7 @@ void GBuffer::bind() const {
   material.bind(UNIT_G_MATERIAL);
   emission.bind(UNIT_G_EMISSION);
   depth.bind(UNIT_G_DEPTH);
+  if (lobes) lobes.bind(UNIT_G_LOBES);
 }
 
 GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
@@ -22,15 +23,22 @@ void GBufferPass::resize(glm::ivec2 size_px) {
   buffer_.material = gl::Texture("g-buffer material", GL_RG32UI, size_px);
   buffer_.emission = gl::Texture("g-buffer emission", GL_RGBA16F, size_px);
   buffer_.depth = gl::Texture("g-buffer depth", GL_DEPTH_COMPONENT32F, size_px);
+  buffer_.lobes = {};
   framebuffer_ = gl::Framebuffer("g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission}, &buffer_.depth);
 }
 
 const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed) {
-  framebuffer_.bind();
+  if (scene.has_lobes() && !buffer_.lobes) {
+    buffer_.lobes = gl::Texture("g-buffer lobes", GL_RGBA32UI, buffer_.size_px());
+    framebuffer_with_lobes_ = gl::Framebuffer(
+        "g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission, &buffer_.lobes}, &buffer_.depth);
+  }
+  const gl::Framebuffer& framebuffer = scene.has_lobes() ? framebuffer_with_lobes_ : framebuffer_;
+  framebuffer.bind();
   const GLfloat nothing_there = 0.0f;  // where it stays, nobody looks at the other textures
-  glClearNamedFramebufferfv(framebuffer_.id(), GL_DEPTH, 0, &nothing_there);
+  glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &nothing_there);
 
-  Variant& variant = variants_.with(scene.texture_defines());
+  Variant& variant = variants_.with(gl::joined(scene.texture_defines(), scene.lobe_defines()));
   variant.program->use();
   variant.frame_seed = seed;
   glEnable(GL_DEPTH_TEST);

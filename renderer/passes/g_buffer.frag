@@ -8,6 +8,9 @@
 #include "shaders/textures.glsl"
 #endif
 #include "shaders/surface.glsl"
+#ifdef HAS_LOBES
+#include "shaders/lobes.glsl"
+#endif
 
 in vec3 world_position;
 in vec3 world_normal;
@@ -21,6 +24,9 @@ flat in uint material_index;
 layout(location = 0) out uvec4 out_surface;
 layout(location = 1) out uvec2 out_material;
 layout(location = 2) out vec4 out_emission;
+#ifdef HAS_LOBES
+layout(location = 3) out uvec4 out_lobes;
+#endif
 
 uniform uint frame_seed;
 
@@ -63,5 +69,16 @@ void main() {
   out_surface = pack_g_surface(surface.normal_ws, geometric_normal, base_color, clamp(surface.metallic, 0.0, 1.0));
   const uint roughness = uint(clamp(surface.roughness, 0.0, 1.0) * 65535.0 + 0.5);
   out_material = uvec2(material_index | (roughness << 16), packUnorm2x16(vec2(material.f0_dielectric, material.specular_factor)));
-  out_emission = vec4(unlit ? surface.base_color.rgb : surface.emission, unlit ? 1.0 : 0.0);
+#ifdef HAS_LOBES
+  Lobes lobes = shade_lobes(material_index, material, at, footprint);
+  const bool behind = dot(at.normal_ws, geometric_normal) < 0.0;
+  if (behind) lobes.clearcoat_normal_ws = -lobes.clearcoat_normal_ws;
+  lobes.clearcoat_normal_ws = visible_shading_normal(lobes.clearcoat_normal_ws, geometric_normal, to_camera);
+  const float f0 = max(lobes.f0_dielectric.r, max(lobes.f0_dielectric.g, lobes.f0_dielectric.b));
+  out_material.y = packUnorm2x16(vec2(f0, lobes.specular_factor));
+  out_lobes = unlit ? uvec4(0u) : pack_g_lobes(lobes, behind);
+  surface.emission *= 1.0 - lobes.clearcoat * mix(kClearcoatF0, 1.0, schlick_weight(dot(lobes.clearcoat_normal_ws, to_camera)));
+#endif
+  const float kLargestHalf = 65504.0;
+  out_emission = vec4(min(unlit ? surface.base_color.rgb : surface.emission, kLargestHalf), unlit ? 1.0 : 0.0);
 }

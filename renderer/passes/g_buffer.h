@@ -12,6 +12,7 @@ struct GBuffer {
   gl::Texture surface;   // RGBA32UI: normal, geometric normal, base colour, metallic
   gl::Texture material;  // RG32UI: material, roughness, dielectric reflectance
   gl::Texture emission;  // RGBA16F: nit; a = 1 where unlit
+  gl::Texture lobes;     // RGBA32UI, of scenes whose materials have lobes beyond the plain BRDF: see shaders/lobes.glsl
   gl::Texture depth;     // 32-bit float, reversed; 0 where there is nothing
 
   glm::ivec2 size_px() const { return depth.size_px(); }
@@ -34,7 +35,7 @@ class GBufferPass {
   };
   gl::Variants<Variant> variants_;
   GBuffer buffer_;
-  gl::Framebuffer framebuffer_;
+  gl::Framebuffer framebuffer_, framebuffer_with_lobes_;
 };
 
 }  // namespace lightwell

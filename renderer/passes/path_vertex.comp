@@ -193,8 +193,8 @@ void main() {
   const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, 5 * from).x), texelFetch(hit_words, 5 * from + 1).x,
                       texelFetch(hit_words, 5 * from + 2).x, uintBitsToFloat(texelFetch(hit_words, 5 * from + 3).x),
                       uintBitsToFloat(texelFetch(hit_words, 5 * from + 4).x));
-  const Path path = Path(Ray(origin.xyz, origin.w, direction.xyz, direction.w), state.xyz, state.w,
-                         path_pixel(packed_path), path_depth(packed_path));
+  Path path = Path(Ray(origin.xyz, origin.w, direction.xyz, direction.w), state.xyz, state.w,
+                   path_pixel(packed_path), path_depth(packed_path));
   if (hit.t < 0.0) {
     leave_scene(path);
     end_path(slot);
@@ -205,6 +205,7 @@ void main() {
     pass_through(slot, path, hit);
     return;
   }
+  path.throughput *= point.medium_transmittance;
   add_emission(path, hit, point);
   const bool lit = (point.material_flags & kMaterialUnlit) == 0u;
   const uint seed_of_pixel = pixel_seed(picture_pixel(path.pixel));

@@ -82,7 +82,15 @@ std::vector<std::pair<int, int>> texture_uses(const Scene& scene) {
     const std::pair<int, int> all[] = {{material.base_color_texture.texture, 1},
                                        {material.emissive_texture.texture, 1},
                                        {material.metallic_roughness_texture.texture, 0},
-                                       {material.normal_texture.texture, 0}};
+                                       {material.normal_texture.texture, 0},
+                                       {material.specular_texture.texture, 0},
+                                       {material.specular_color_texture.texture, 1},
+                                       {material.transmission_texture.texture, 0},
+                                       {material.clearcoat_texture.texture, 0},
+                                       {material.clearcoat_roughness_texture.texture, 0},
+                                       {material.clearcoat_normal_texture.texture, 0},
+                                       {material.sheen_color_texture.texture, 1},
+                                       {material.sheen_roughness_texture.texture, 0}};
     for (const auto& use : all)
       if (use.first >= 0) uses.push_back(use);
   }

@@ -75,17 +75,26 @@ struct Material {
   bool double_sided = false;
   bool unlit = false;  // KHR_materials_unlit: base colour is shown as it is and lights nothing
 
-  float ior = 1.5f;              // KHR_materials_ior
+  float ior = 1.5f;              // KHR_materials_ior; 0: reflects everything
   float specular_factor = 1.0f;  // KHR_materials_specular
   glm::vec3 specular_color_factor{1.0f};
+  TextureUse specular_texture;        // A
+  TextureUse specular_color_texture;  // sRGB
   float transmission_factor = 0.0f;   // KHR_materials_transmission
-  float thickness_factor = 0.0f;      // KHR_materials_volume: 0 is thin-walled
+  TextureUse transmission_texture;    // R
+  float thickness_factor = 0.0f;      // KHR_materials_volume: 0 is thin-walled; how thick, the mesh itself says
   float attenuation_distance = 0.0f;  // metres; 0 means infinite
   glm::vec3 attenuation_color{1.0f};
   float clearcoat_factor = 0.0f;  // KHR_materials_clearcoat
   float clearcoat_roughness = 0.0f;
-  glm::vec3 sheen_color_factor{0.0f};  // KHR_materials_sheen
+  float clearcoat_normal_scale = 1.0f;
+  TextureUse clearcoat_texture;            // R
+  TextureUse clearcoat_roughness_texture;  // G
+  TextureUse clearcoat_normal_texture;     // tangent space; without it the mesh's own normal
+  glm::vec3 sheen_color_factor{0.0f};      // KHR_materials_sheen
   float sheen_roughness = 0.0f;
+  TextureUse sheen_color_texture;      // sRGB
+  TextureUse sheen_roughness_texture;  // A
 };
 
 struct MorphTarget {

@@ -28,6 +28,7 @@ struct Brdf {
   vec3 clearcoat_normal;    // in the frame of the directions, on the viewer's side
   vec3 sheen_color;
   float sheen_roughness;
+  vec3 demodulation_f0;     // f0 of the plain variant, see directional_albedo()
 #endif
 };
 
@@ -56,6 +57,7 @@ Brdf make_brdf(vec3 base_color, float metallic, float roughness, vec3 f0_dielect
   brdf.clearcoat_normal = vec3(0.0, 0.0, 1.0);
   brdf.sheen_color = vec3(0.0);
   brdf.sheen_roughness = 0.0;
+  brdf.demodulation_f0 = brdf.f0;
 #endif
   return brdf;
 }
@@ -184,19 +186,22 @@ vec3 sample_brdf(Brdf brdf, vec3 out_direction, vec2 u, float u_lobe) {
 }
 #endif
 
-// What the surface reflects (and lets through) of uniform light, roughly: by it the indirect map is demodulated, so that
-// the map stays smooth over textures. Any positive function keeps the picture's mean; the closer, the smoother.
+// What the surface reflects of uniform light, roughly: by it the indirect map is demodulated, so that the map stays smooth
+// over textures. Any positive function keeps the picture's mean; the closer, the smoother. The same in all variants, for
+// passes that divide by it and ones that multiply may not need the same.
 // Specular part: the analytic fit of Karis 2014 ("Physically based shading on mobile").
 vec3 directional_albedo(Brdf brdf, float cos_out) {
   const float roughness = sqrt(brdf.alpha);
   const vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
   const float a004 = min(r.x * r.x, exp2(-9.28 * cos_out)) * r.x + r.y;
   const vec2 scale_bias = vec2(-1.04, 1.04) * a004 + r.zw;
-  const vec3 specular = max(brdf.f0 * scale_bias.x + brdf.f90 * scale_bias.y, vec3(0.0));
-  const vec3 albedo = brdf.diffuse_albedo * (1.0 - brdf.f0_dielectric) + specular;
 #ifdef HAS_LOBES
-  return albedo + brdf.transmission_color + brdf.sheen_color + vec3(0.04 * brdf.clearcoat);
+  const vec3 f0 = brdf.demodulation_f0;
+  const vec3 base = brdf.diffuse_albedo + brdf.transmission_color;
 #else
-  return albedo;
+  const vec3 f0 = brdf.f0;
+  const vec3 base = brdf.diffuse_albedo;
 #endif
+  const vec3 specular = max(f0 * scale_bias.x + brdf.f90 * scale_bias.y, vec3(0.0));
+  return base * (1.0 - brdf.f0_dielectric) + specular;
 }

@@ -5,6 +5,11 @@ layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;  // material | 
 layout(binding = UNIT_G_EMISSION) uniform sampler2D g_emission;   // nit
 layout(binding = UNIT_G_DEPTH) uniform sampler2D g_depth;         // reversed; 0: nothing there
 
+#ifdef HAS_LOBES
+#include "shaders/lobes.glsl"
+layout(binding = UNIT_G_LOBES) uniform usampler2D g_lobes;
+#endif
+
 struct GBufferPoint {
   bool valid;                // false: background
   float view_depth_m;
@@ -34,6 +39,11 @@ GBufferPoint g_buffer_point(ivec2 pixel) {
   const float roughness = float(packed_material.x >> 16) / 65535.0;
   const vec2 dielectric = unpackUnorm2x16(packed_material.y);
   point.brdf = make_brdf(base_color, blue_metallic.y, roughness, dielectric.x, dielectric.y);
+#ifdef HAS_LOBES
+  const uvec4 lobes = texelFetch(g_lobes, pixel, 0);
+  point.brdf = with_lobes(point.brdf, base_color, blue_metallic.y, unpack_g_lobes(lobes, dielectric),
+                          max(g_lobes_eta(lobes), 1e-3));
+#endif
   return point;
 }
 

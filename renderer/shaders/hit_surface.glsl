@@ -7,7 +7,30 @@ struct HitPoint {
   vec3 geometric_normal_ws;  // unit, turned towards where the ray came from
   uint material_flags;
   bool from_behind;          // the ray came from the back of the triangle, by its winding
+  vec3 medium_transmittance;  // of the volume that the ray passed to come here, by Beer's law; 1 outside volumes
 };
+
+#ifdef HAS_LOBES
+#include "shaders/lobes.glsl"
+
+// Light that reaches the back of a volume's surface was inside it.
+void add_lobes(inout HitPoint point, Lobes lobes, Ray ray, float distance_m, bool behind) {
+  const bool inside = behind && lobes.ior > 0.0;
+  const float eta = lobes.ior > 0.0 ? (inside ? 1.0 / lobes.ior : lobes.ior) : 1.0;
+  const vec3 to_viewer = -ray.direction_ws;
+  if (behind) lobes.clearcoat_normal_ws = -lobes.clearcoat_normal_ws;
+  lobes.clearcoat_normal_ws =
+      visible_shading_normal(lobes.clearcoat_normal_ws, point.geometric_normal_ws, to_viewer);
+  if (inside) {
+    lobes.clearcoat = 0.0;
+    lobes.sheen_color = vec3(0.0);
+    point.medium_transmittance = exp(-lobes.absorption * distance_m);
+  }
+  point.brdf = with_lobes(point.brdf, clamp(point.surface.base_color.rgb, 0.0, 1.0),
+                          clamp(point.surface.metallic, 0.0, 1.0), lobes, eta);
+  point.surface.emission *= 1.0 - clearcoat_reflectance(point.brdf, dot(lobes.clearcoat_normal_ws, to_viewer));
+}
+#endif
 
 HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
   const Instance instance = fetch_instance(hit.instance);
@@ -49,5 +72,9 @@ HitPoint hit_point(Ray ray, Hit hit, float footprint_m) {
                          point.surface.roughness, material.f0_dielectric, material.specular_factor);
   point.material_flags = material.flags;
   point.from_behind = behind;
+  point.medium_transmittance = vec3(1.0);
+#ifdef HAS_LOBES
+  add_lobes(point, shade_lobes(instance.material, material, at, vec2(footprint_uv)), ray, hit.t, behind);
+#endif
   return point;
 }

@@ -50,7 +50,7 @@ const uint kMaterialUnlit = 8u;
 layout(binding = UNIT_VERTICES) uniform usamplerBuffer vertex_words;      // 2 texels a vertex
 layout(binding = UNIT_TRIANGLES) uniform usamplerBuffer triangle_words;   // 2 texels a triangle
 layout(binding = UNIT_INSTANCES) uniform usamplerBuffer instance_words;   // 4 texels an instance
-layout(binding = UNIT_MATERIALS) uniform usamplerBuffer material_words;   // 12 texels a material
+layout(binding = UNIT_MATERIALS) uniform usamplerBuffer material_words;   // 32 texels a material
 
 Vertex fetch_vertex(uint vertex) {
   const uvec4 a = texelFetch(vertex_words, int(2u * vertex));
@@ -84,8 +84,10 @@ TextureUse fetch_texture_use(int texel) {
   return TextureUse(uv_transform, uintBitsToFloat(rest.xy), rest.z);
 }
 
+const uint kMaterialTexels = 32u;
+
 Material fetch_material(uint index) {
-  const int first = int(12u * index);
+  const int first = int(kMaterialTexels * index);
   const uvec4 emission = texelFetch(material_words, first + 1);
   const vec4 lobes = uintBitsToFloat(texelFetch(material_words, first + 2));
   const uvec4 rest = texelFetch(material_words, first + 3);

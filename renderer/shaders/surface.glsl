@@ -18,6 +18,18 @@ struct Surface {
   vec3 normal_ws;       // unit, normal map applied, not yet turned towards the viewer
 };
 
+#ifdef ALL_TEXTURES
+// The interpolated normal, or what a normal map makes of it.
+vec3 mapped_normal(TextureUse use, float scale, Attributes at, vec2 footprint) {
+  const vec3 tangent = at.tangent_ws - at.normal_ws * dot(at.normal_ws, at.tangent_ws);
+  if (use.slot == 0u || dot(tangent, tangent) <= 1e-12) return at.normal_ws;
+  const vec3 texel = sample_data_texture(use, at.uv0, at.uv1, footprint).xyz * 2.0 - 1.0;
+  const vec3 t = normalize(tangent);
+  const vec3 b = at.handedness * cross(at.normal_ws, t);
+  return normalize((t * texel.x + b * texel.y) * scale + at.normal_ws * texel.z);
+}
+#endif
+
 // `footprint` in units of each set of uv: how wide an area the lookups should average.
 Surface shade_surface(Material material, Attributes at, vec2 footprint) {
   Surface surface;
@@ -38,16 +50,7 @@ Surface shade_surface(Material material, Attributes at, vec2 footprint) {
   }
   if (material.emissive_texture.slot != 0u)
     surface.emission *= sample_color_texture(material.emissive_texture, at.uv0, at.uv1, footprint).rgb;
-  if (material.normal_texture.slot != 0u) {
-    vec3 tangent_space = sample_data_texture(material.normal_texture, at.uv0, at.uv1, footprint).xyz * 2.0 - 1.0;
-    tangent_space.xy *= material.normal_scale;
-    const vec3 tangent = at.tangent_ws - at.normal_ws * dot(at.normal_ws, at.tangent_ws);
-    if (dot(tangent, tangent) > 1e-12) {
-      const vec3 t = normalize(tangent);
-      const vec3 b = at.handedness * cross(at.normal_ws, t);
-      surface.normal_ws = normalize(t * tangent_space.x + b * tangent_space.y + at.normal_ws * tangent_space.z);
-    }
-  }
+  surface.normal_ws = mapped_normal(material.normal_texture, material.normal_scale, at, footprint);
 #endif
   return surface;
 }

@@ -5,6 +5,7 @@
 
 #include "renderer/tracing/embree/embree_tracer.h"
 #include "server/command_line/add_option.h"
+#include "server/command_line/environment_options.h"
 #include "server/command_line/output_file.h"
 #include "server/command_line/progress.h"
 #include "server/command_line/render_report.h"
@@ -140,6 +141,8 @@ void add_render_options(CLI::App& app, RenderArguments& arguments) {
   app.option_defaults()->group("Camera");
   add_camera_options(app, arguments.camera);
   add_settings_options(app, arguments.settings);
+  app.option_defaults()->group("Light");
+  add_environment_options(app, arguments.environment);
   add_device_options(app, arguments.device, arguments.tracer);
 }
 
@@ -148,7 +151,7 @@ ExitCode run_render(const RenderArguments& arguments) {
   if (const Status status = check_settings(arguments.settings, arguments.size_px); !status)
     return report_usage(Error{status.error().kind, "--" + status.error().where, status.error().what});
   RenderReport report(arguments);
-  const Result<Scene> scene = load_scene_argument(arguments.scene);
+  const Result<Scene> scene = load_scene_argument(arguments.scene, arguments.environment);
   if (!scene) return lightwell::report(scene.error());
   report.scene_loaded();
   if (const Result<PlacedCamera> camera = camera_at(arguments, *scene, arguments.time_s); !camera)

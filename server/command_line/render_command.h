@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "renderer/image_io/environment_file.h"
 #include "renderer/renderer.h"
 #include "server/command_line/camera_argument.h"
 #include "server/command_line/exit_code.h"
@@ -25,6 +26,7 @@ struct RenderArguments {
   double fps = 30.0;
   CameraArgument camera;
   Settings settings;
+  EnvironmentChoice environment;
   std::string device, tracer;
   bool json = false;
 };

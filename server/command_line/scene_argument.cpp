@@ -21,13 +21,14 @@ Error error_in(const std::string& scene, Error error) {
 
 }  // namespace
 
-Result<Scene> load_scene_argument(const std::string& name) {
+Result<Scene> load_scene_argument(const std::string& name, const EnvironmentChoice& environment) {
   const bool is_builtin = name.starts_with(kBuiltinPrefix);
   Result<Scene> scene =
       is_builtin ? builtin_scene(std::string_view(name).substr(kBuiltinPrefix.size())) : load_gltf(name);
   if (!scene) return error_in(name, scene.error());
   for (const std::string& warning : scene->warnings)
     std::fprintf(stderr, "lightwell: %s: warning: %s\n", name.c_str(), warning.c_str());
+  if (const Status applied = apply_environment(environment, scene->environment); !applied) return applied.error();
   if (add_default_light(*scene))
     std::fprintf(stderr, "lightwell: %s brings no light; a soft sky and a sun were added\n", name.c_str());
   return scene;

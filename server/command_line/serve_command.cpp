@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "server/command_line/add_option.h"
+#include "server/command_line/environment_options.h"
 #include "server/command_line/settings_options.h"
 
 namespace lightwell {
@@ -99,6 +100,8 @@ void add_serve_options(CLI::App& app, ServeOptions& options) {
       app, "--drain-delay", options.drain_delay_s,
       [](const std::string& text) { return parse_number(text, 0.0, 3600.0); }, "SECONDS",
       "Told to stop, serve on for so long while not ready, so that a balancer notices", "0");
+  app.option_defaults()->group("Light");
+  add_environment_options(app, options.environment);
   app.option_defaults()->group("Access");
   add_access_options(app, options);
   app.option_defaults()->group("Limits");

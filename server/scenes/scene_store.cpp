@@ -39,29 +39,31 @@ std::shared_ptr<const StagedScene> staged(Scene scene, const std::string& name) 
 }  // namespace
 
 void SceneStore::add_builtin_scenes() {
-  for (const std::string& name : builtin_scene_names()) add_builtin(name);
+  for (const std::string& name : builtin_scene_names()) static_cast<void>(add_builtin(name));  // in their own light
 }
 
-void SceneStore::add_builtin(const std::string& name) {
-  if (find(name)) return;
+Status SceneStore::add_builtin(const std::string& name, const EnvironmentChoice& environment) {
+  if (find(name)) return Done{};
   Result<Scene> scene = builtin_scene(name);
-  if (!scene) return;
+  if (!scene) return scene.error();
+  if (const Status applied = apply_environment(environment, scene->environment); !applied) return applied;
   auto stage = std::make_shared<const StagedScene>(std::move(scene).value());
   Entry entry{stage->entry(name, true), stage, 0, false};
   std::lock_guard lock(mutex_);
   scenes_.emplace(name, std::move(entry));
+  return Done{};
 }
 
-Result<std::string> SceneStore::add_from_command_line(const std::string& scene) {
+Result<std::string> SceneStore::add_from_command_line(const std::string& scene, const EnvironmentChoice& environment) {
   if (scene.starts_with(kBuiltinPrefix)) {
     const std::string name = scene.substr(kBuiltinPrefix.size());
-    if (const Result<Scene> known = builtin_scene(name); !known) return known.error();
-    add_builtin(name);
+    if (const Status added = add_builtin(name, environment); !added) return added.error();
     std::lock_guard lock(mutex_);
     return first_ = name;
   }
   Result<Scene> loaded = load_gltf(scene);
   if (!loaded) return loaded.error();
+  if (const Status applied = apply_environment(environment, loaded->environment); !applied) return applied.error();
   std::string name = scene_name_of(scene);
   const std::vector<std::string>& builtin = builtin_scene_names();
   if (std::find(builtin.begin(), builtin.end(), name) != builtin.end()) name = name.substr(0, 59) + "-file";

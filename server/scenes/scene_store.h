@@ -22,8 +22,8 @@ class SceneStore {
   /// Makes all built-in scenes that are not there yet.
   void add_builtin_scenes();
   /// Loads what the command line names: builtin:NAME or a file, which is known by its stem from then on.
-  /// Gives that name. Sessions that name no scene open it.
-  Result<std::string> add_from_command_line(const std::string& scene);
+  /// Gives that name. Sessions that name no scene open it. It stands in `environment`.
+  Result<std::string> add_from_command_line(const std::string& scene, const EnvironmentChoice& environment = {});
 
   struct Stored {
     protocol::SceneEntry entry;
@@ -47,7 +47,7 @@ class SceneStore {
     bool uploaded = false;
   };
 
-  void add_builtin(const std::string& name);
+  Status add_builtin(const std::string& name, const EnvironmentChoice& environment = {});
   std::optional<protocol::Problem> refuse_upload(const std::string& name, std::uint64_t bytes) const;
 
   const ServeLimits limits_;

@@ -82,5 +82,143 @@ TEST(MultipleScattering, KeepsTheLightThatARoughMetalWouldLose) {
   EXPECT_NEAR(render(scene, camera, settings).mean().g, 1.0f, 0.02f);
 }
 
+// A floor of this material under a white sky, seen from above.
+float under_white_sky(const Material& material, bool multiple_scattering = false) {
+  SceneMaker maker;
+  maker.quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, maker.material(material));
+  Scene scene = maker.take();
+  add_white_sky(scene);
+  Settings settings = one_bounce();
+  settings.multiple_scattering = multiple_scattering;
+  return render(scene, look_at({0, 3, 0.1f}, {0, 0, 0}, 0.1f), settings).mean().g;
+}
+
+Material black() {
+  Material material = lambert(glm::vec3(0.0f));
+  material.roughness_factor = 0.0f;
+  return material;
+}
+
+TEST(Lobes, AThinPaneOfGlassIsInvisibleInUniformLight) {
+  Material glass;
+  glass.metallic_factor = 0.0f;
+  glass.roughness_factor = 0.1f;
+  glass.transmission_factor = 1.0f;
+  EXPECT_NEAR(under_white_sky(glass), 1.0f, 0.02f);
+  EXPECT_NEAR(under_white_sky(glass, true), 1.0f, 0.02f);
+  glass.base_color_factor = {0.5f, 0.5f, 0.5f, 1.0f};
+  EXPECT_NEAR(under_white_sky(glass), 0.04f + 0.96f * 0.5f, 0.02f);
+}
+
+TEST(Lobes, AClearcoatReflectsFourPercentFromAbove) {
+  Material coated = black();
+  coated.clearcoat_factor = 1.0f;
+  EXPECT_NEAR(under_white_sky(coated), 0.04f, 0.004f);
+  coated.clearcoat_factor = 0.5f;
+  EXPECT_NEAR(under_white_sky(coated), 0.02f, 0.002f);
+}
+
+TEST(Lobes, SheenIsAddedAndTakenFromTheBase) {
+  Material velvet = black();
+  velvet.sheen_color_factor = glm::vec3(1.0f);
+  velvet.sheen_roughness = 0.5f;
+  const float sheen = under_white_sky(velvet);
+  EXPECT_GT(sheen, 0.01f);
+  velvet.base_color_factor = glm::vec4(1.0f);
+  const float both = under_white_sky(velvet);
+  EXPECT_GT(both, 0.8f);
+  EXPECT_LT(both, 1.01f);
+}
+
+TEST(Lobes, ASpecularColourTintsTheReflection) {
+  Material tinted = black();
+  tinted.specular_factor = 1.0f;
+  tinted.specular_color_factor = {1.0f, 5.0f, 1.0f};
+  EXPECT_NEAR(under_white_sky(tinted), 0.2f, 0.01f);
+}
+
+// Light of any strength gives numbers.
+TEST(Lobes, EmissionBeyondMeasureStaysFinite) {
+  Material bright = lambert(glm::vec3(0.5f), glm::vec3(1.0f));
+  bright.emissive_strength = 1e15f;
+  EXPECT_GT(under_white_sky(bright), 6e4f);
+}
+
+// What of a glowing wall's light comes through two faces of glass a metre apart, looked at along their normals.
+glm::vec3 through_a_slab(const Material& glass) {
+  SceneMaker maker;
+  const int slab = maker.material(glass);
+  maker.quad({-5, -5, 0.5f}, {10, 0, 0}, {0, 10, 0}, slab);   // its face towards the camera
+  maker.quad({-5, -5, -0.5f}, {0, 10, 0}, {10, 0, 0}, slab);  // and the one away from it
+  maker.quad({-20, -20, -3}, {40, 0, 0}, {0, 40, 0}, maker.material(lambert(glm::vec3(0.0f), glm::vec3(1.0f))));
+  Settings settings;
+  settings.method = Method::kReference;
+  settings.bounces = 16;
+  return render(maker.take(), look_at({0, 0, 3}, {0, 0, 0}, 0.02f), settings, {32, 32}, 64).mean();
+}
+
+// Fresnel's equations at normal incidence, Beer's law between the faces, and all reflections between them.
+TEST(Volumes, ASlabOfGlassTransmitsByFresnelAndBeer) {
+  Material glass;
+  glass.metallic_factor = 0.0f;
+  glass.roughness_factor = 0.0f;
+  glass.transmission_factor = 1.0f;
+  glass.thickness_factor = 1.0f;
+  glass.attenuation_color = {1.0f, 0.5f, 0.1f};
+  glass.attenuation_distance = 2.0f;
+  const float reflected = std::pow(0.5f / 2.5f, 2.0f);
+  const glm::vec3 light = through_a_slab(glass);
+  for (int c = 0; c < 3; ++c) {
+    const float passed = std::sqrt(glass.attenuation_color[c]);  // half the distance
+    const float expected =
+        (1.0f - reflected) * (1.0f - reflected) * passed / (1.0f - reflected * reflected * passed * passed);
+    EXPECT_NEAR(light[c], expected, 0.005f) << "channel " << c;
+  }
+}
+
+// A body that absorbs nothing is invisible where light comes from everywhere alike, rays within it and all.
+TEST(Volumes, ClearGlassLosesNoLight) {
+  Material glass;
+  glass.metallic_factor = 0.0f;
+  glass.roughness_factor = 0.0f;
+  glass.transmission_factor = 1.0f;
+  glass.thickness_factor = 1.0f;
+  SceneMaker maker;
+  const int material = maker.material(glass);
+  maker.quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, material);
+  maker.quad({-1, -1, -1}, {0, 2, 0}, {2, 0, 0}, material);
+  maker.quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}, material);
+  maker.quad({-1, -1, -1}, {2, 0, 0}, {0, 0, 2}, material);
+  maker.quad({1, -1, -1}, {0, 2, 0}, {0, 0, 2}, material);
+  maker.quad({-1, -1, -1}, {0, 0, 2}, {0, 2, 0}, material);
+  Scene scene = maker.take();
+  add_white_sky(scene);
+  Settings settings;
+  settings.method = Method::kReference;
+  settings.bounces = 64;
+  const Pixels pixels = render(scene, look_at({3, 2, 4}, {0, 0, 0}, 0.3f), settings, {32, 32}, 32);
+  EXPECT_NEAR(pixels.mean().g, 1.0f, 0.01f);
+}
+
+// One half of the sky is lit: turning it by half a turn darkens what was lit.
+TEST(EnvironmentImage, LightsByItsTexelsAndTurns) {
+  auto image = std::make_shared<ImageHdr>();
+  image->size_px = {64, 32};
+  for (int i = 0; i < 64 * 32; ++i)
+    for (int c = 0; c < 3; ++c) image->rgb.push_back(i % 64 < 32 ? 1.0f : 0.0f);  // -X, left of the middle towards -Z
+  const auto lit_from_the_left = [&](float rotation, float strength) {
+    SceneMaker maker;
+    maker.quad({0, -5, -5}, {0, 0, 10}, {0, 10, 0}, maker.material(lambert(glm::vec3(0.5f))));  // faces -X
+    Scene scene = maker.take();
+    scene.environment.image = image;
+    scene.environment.rotation = rotation;
+    scene.environment.strength = strength;
+    return render(scene, look_at({-3, 0, 0}, {0, 0, 0}, 0.1f), one_bounce()).mean().g;
+  };
+  EXPECT_NEAR(lit_from_the_left(0.0f, 1.0f), 0.5f, 0.02f);
+  EXPECT_NEAR(lit_from_the_left(0.0f, 3.0f), 1.5f, 0.06f);
+  EXPECT_NEAR(lit_from_the_left(3.14159265f, 1.0f), 0.0f, 0.02f);
+}
+
 }  // namespace
 }  // namespace lightwell::testing

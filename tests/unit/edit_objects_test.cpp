@@ -42,6 +42,14 @@ TEST(MaterialEdits, SetEveryProperty) {
       {"/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", 0.1},
       {"/extensions/KHR_materials_sheen/sheenColorFactor", {0.1, 0.1, 0.2}},
       {"/extensions/KHR_materials_sheen/sheenRoughnessFactor", 0.4},
+      {"/extensions/KHR_materials_specular/specularTexture/index", 0},
+      {"/extensions/KHR_materials_specular/specularColorTexture/index", 1},
+      {"/extensions/KHR_materials_transmission/transmissionTexture/index", 0},
+      {"/extensions/KHR_materials_clearcoat/clearcoatTexture/index", 1},
+      {"/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture/texCoord", 1},
+      {"/extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", 0.5},
+      {"/extensions/KHR_materials_sheen/sheenColorTexture/extensions/KHR_texture_transform/offset", {0.5, 0.25}},
+      {"/extensions/KHR_materials_sheen/sheenRoughnessTexture/index", 0},
   };
   Scene one_by_one = make_edit_scene(), at_once = make_edit_scene();
   Json whole = Json::object();

@@ -203,12 +203,25 @@ TEST(GltfMaterials, Extensions) {
                  {"KHR_materials_emissive_strength", {{"emissiveStrength", 70000000000}}},  // more than an int holds
                  {"KHR_materials_ior", {{"ior", 1.33}}},
                  {"KHR_materials_specular",
-                  {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0}}, {"specularTexture", texture}}},
-                 {"KHR_materials_transmission", {{"transmissionFactor", 0.75}}},
+                  {{"specularFactor", 0.5},
+                   {"specularColorFactor", {2, 1, 0}},
+                   {"specularTexture", texture},
+                   {"specularColorTexture", texture}}},
+                 {"KHR_materials_transmission", {{"transmissionFactor", 0.75}, {"transmissionTexture", texture}}},
                  {"KHR_materials_volume",
                   {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {0.1, 0.2, 0.3}}}},
-                 {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.5}}},
-                 {"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0, 0}}, {"sheenRoughnessFactor", 0.25}}}}}});
+                 {"KHR_materials_clearcoat",
+                  {{"clearcoatFactor", 1},
+                   {"clearcoatRoughnessFactor", 0.5},
+                   {"clearcoatTexture", texture},
+                   {"clearcoatRoughnessTexture", texture},
+                   {"clearcoatNormalTexture", {{"index", 0}, {"scale", 0.5}, {"texCoord", 1}}}}},
+                 {"KHR_materials_sheen",
+                  {{"sheenColorFactor", {0.5, 0, 0}},
+                   {"sheenRoughnessFactor", 0.25},
+                   {"sheenColorTexture", texture},
+                   {"sheenRoughnessTexture",
+                    {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 3}}}}}}}}}}}}});
   const Scene scene = loaded(builder);
   const Material& material = scene.materials[0];
   EXPECT_TRUE(material.unlit);
@@ -224,8 +237,25 @@ TEST(GltfMaterials, Extensions) {
   EXPECT_EQ(material.clearcoat_roughness, 0.5f);
   EXPECT_EQ(material.sheen_color_factor, glm::vec3(0.5f, 0, 0));
   EXPECT_EQ(material.sheen_roughness, 0.25f);
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("specularTexture of KHR_materials_specular is ignored")));
-  EXPECT_THAT(scene.images, IsEmpty()) << "an image that nothing shows need not be decoded";
+  for (const TextureUse* use :
+       {&material.specular_texture, &material.specular_color_texture, &material.transmission_texture,
+        &material.clearcoat_texture, &material.clearcoat_roughness_texture, &material.clearcoat_normal_texture,
+        &material.sheen_color_texture, &material.sheen_roughness_texture})
+    EXPECT_EQ(use->texture, 0);
+  EXPECT_EQ(material.clearcoat_normal_scale, 0.5f);
+  EXPECT_EQ(material.clearcoat_normal_texture.uv_set, 1);
+  EXPECT_EQ(material.sheen_roughness_texture.scale, glm::vec2(2, 3));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.images, SizeIs(1));
+}
+
+TEST(GltfMaterials, LightBeyondAnyMeasureIsClamped) {
+  GltfBuilder builder = GltfBuilder::triangle();
+  builder.add("materials", {{"emissiveFactor", {1, 1, 1}},
+                            {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e30}}}}}});
+  const Scene scene = loaded(builder);
+  EXPECT_EQ(scene.materials[0].emissive_strength, 1e15f);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("emissiveStrength is 1e+30; 1e+15 is used")));
 }
 
 TEST(GltfTextures, Transform) {

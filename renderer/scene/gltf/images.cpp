@@ -20,8 +20,12 @@ struct Encoded {
 std::vector<bool> used_textures(const Scene& scene) {
   std::vector<bool> used(scene.textures.size(), false);
   for (const Material& material : scene.materials)
-    for (const TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                  &material.normal_texture, &material.occlusion_texture, &material.emissive_texture})
+    for (const TextureUse* use :
+         {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+          &material.occlusion_texture, &material.emissive_texture, &material.specular_texture,
+          &material.specular_color_texture, &material.transmission_texture, &material.clearcoat_texture,
+          &material.clearcoat_roughness_texture, &material.clearcoat_normal_texture, &material.sheen_color_texture,
+          &material.sheen_roughness_texture})
       if (use->texture != kNone) used[static_cast<std::size_t>(use->texture)] = true;
   return used;
 }

@@ -7,6 +7,9 @@
 namespace lightwell::gltf {
 namespace {
 
+// Beyond it, sums and squares of light leave the range of a float.
+constexpr double kMostLight = 1e15;
+
 Wrap read_wrap(Context& context, int value, const std::string& where) {
   switch (value) {
     case TINYGLTF_TEXTURE_WRAP_REPEAT:
@@ -84,6 +87,21 @@ TextureUse read_use(Context& context, const Scene& scene, const TextureInfo& inf
   return use;
 }
 
+/// A textureInfo within an extension, which tinygltf leaves as a plain value.
+TextureUse read_use(Context& context, const Scene& scene, const tinygltf::Value& extension, const char* name,
+                    const std::string& where) {
+  if (!extension.Has(name)) return {};
+  const tinygltf::Value& source = extension.Get(name);
+  tinygltf::TextureInfo info;
+  info.index = index_or(source, "index", kNone);
+  info.texCoord = index_or(source, "texCoord", 0);
+  if (source.Has("extensions")) {
+    const tinygltf::Value& extensions = source.Get("extensions");
+    for (const std::string& key : extensions.Keys()) info.extensions[key] = extensions.Get(key);
+  }
+  return read_use(context, scene, info, join(where, name));
+}
+
 AlphaMode read_alpha_mode(Context& context, const std::string& mode, const std::string& where) {
   if (mode == "MASK") return AlphaMode::kMask;
   if (mode == "BLEND") return AlphaMode::kBlend;
@@ -119,28 +137,25 @@ void read_core(Context& context, const Scene& scene, const tinygltf::Material& s
   material.emissive_texture = use(source.emissiveTexture, where, "emissiveTexture");
 }
 
-void warn_of_textures(Context& context, const tinygltf::Value& extension, const std::string& where, const char* name) {
-  for (const std::string& member : extension.Keys())
-    if (member.ends_with("Texture"))
-      context.warnings.add_once(where, std::string("the ") + member + " of " + name + " is ignored, its factor is not");
-}
-
-void read_extensions(Context& context, const tinygltf::Material& source, const std::string& where, Material& material) {
+void read_extensions(Context& context, const Scene& scene, const tinygltf::Material& source, const std::string& where,
+                     Material& material) {
   /// Calls `read(extension, path)` if the material has the extension.
   const auto with = [&](const char* name, auto read) {
     const tinygltf::Value* extension = find_extension(source.extensions, name);
     if (!extension) return;
     const std::string path = join(join(where, "extensions"), name);
-    warn_of_textures(context, *extension, path, name);
     read(*extension, path);
   };
   const auto factor = [&](const tinygltf::Value& extension, const char* name, double fallback, double most,
                           const std::string& path) {
     return clamped(context, number_or(extension, name, fallback), 0.0, most, path, name);
   };
+  const auto use = [&](const tinygltf::Value& extension, const char* name, const std::string& path) {
+    return read_use(context, scene, extension, name, path);
+  };
   with("KHR_materials_unlit", [&](const auto&, const auto&) { material.unlit = true; });
   with("KHR_materials_emissive_strength", [&](const auto& extension, const auto& path) {
-    material.emissive_strength = factor(extension, "emissiveStrength", 1.0, kMaxFloat, path);
+    material.emissive_strength = factor(extension, "emissiveStrength", 1.0, kMostLight, path);
   });
   with("KHR_materials_ior", [&](const auto& extension, const auto& path) {
     // 0 is legal: a mirror at grazing angles and all others alike.
@@ -151,9 +166,12 @@ void read_extensions(Context& context, const tinygltf::Material& source, const s
     material.specular_factor = factor(extension, "specularFactor", 1.0, 1.0, path);
     material.specular_color_factor =
         color_or(context, extension, "specularColorFactor", glm::vec3(1.0f), kMaxFloat, path);
+    material.specular_texture = use(extension, "specularTexture", path);
+    material.specular_color_texture = use(extension, "specularColorTexture", path);
   });
   with("KHR_materials_transmission", [&](const auto& extension, const auto& path) {
     material.transmission_factor = factor(extension, "transmissionFactor", 0.0, 1.0, path);
+    material.transmission_texture = use(extension, "transmissionTexture", path);
   });
   with("KHR_materials_volume", [&](const auto& extension, const auto& path) {
     material.thickness_factor = factor(extension, "thicknessFactor", 0.0, kMaxFloat, path);
@@ -163,10 +181,19 @@ void read_extensions(Context& context, const tinygltf::Material& source, const s
   with("KHR_materials_clearcoat", [&](const auto& extension, const auto& path) {
     material.clearcoat_factor = factor(extension, "clearcoatFactor", 0.0, 1.0, path);
     material.clearcoat_roughness = factor(extension, "clearcoatRoughnessFactor", 0.0, 1.0, path);
+    material.clearcoat_texture = use(extension, "clearcoatTexture", path);
+    material.clearcoat_roughness_texture = use(extension, "clearcoatRoughnessTexture", path);
+    material.clearcoat_normal_texture = use(extension, "clearcoatNormalTexture", path);
+    if (extension.Has("clearcoatNormalTexture"))
+      material.clearcoat_normal_scale =
+          clamped(context, number_or(extension.Get("clearcoatNormalTexture"), "scale", 1.0), -kMaxFloat, kMaxFloat,
+                  path, "clearcoatNormalTexture/scale");
   });
   with("KHR_materials_sheen", [&](const auto& extension, const auto& path) {
     material.sheen_color_factor = color_or(context, extension, "sheenColorFactor", glm::vec3(0.0f), 1.0, path);
     material.sheen_roughness = factor(extension, "sheenRoughnessFactor", 0.0, 1.0, path);
+    material.sheen_color_texture = use(extension, "sheenColorTexture", path);
+    material.sheen_roughness_texture = use(extension, "sheenRoughnessTexture", path);
   });
 }
 
@@ -180,7 +207,7 @@ void read_materials(Context& context, Scene& scene) {
     Material material;
     material.name = materials[i].name;
     read_core(context, scene, materials[i], where, material);
-    read_extensions(context, materials[i], where, material);
+    read_extensions(context, scene, materials[i], where, material);
     scene.materials.push_back(std::move(material));
   }
 }

@@ -83,6 +83,18 @@ void add_extensions(std::vector<Property>& properties) {
   add("clearcoat/clearcoatRoughnessFactor", &Material::clearcoat_roughness, kUnit);
   add("sheen/sheenColorFactor", &Material::sheen_color_factor, kUnit);
   add("sheen/sheenRoughnessFactor", &Material::sheen_roughness, kUnit);
+  add("clearcoat/clearcoatNormalTexture/scale", &Material::clearcoat_normal_scale, Range{});
+  const auto add_use = [&](const std::string& path, TextureUse Material::*use) {
+    add_texture(properties, "/extensions/KHR_materials_" + path, use);
+  };
+  add_use("specular/specularTexture", &Material::specular_texture);
+  add_use("specular/specularColorTexture", &Material::specular_color_texture);
+  add_use("transmission/transmissionTexture", &Material::transmission_texture);
+  add_use("clearcoat/clearcoatTexture", &Material::clearcoat_texture);
+  add_use("clearcoat/clearcoatRoughnessTexture", &Material::clearcoat_roughness_texture);
+  add_use("clearcoat/clearcoatNormalTexture", &Material::clearcoat_normal_texture);
+  add_use("sheen/sheenColorTexture", &Material::sheen_color_texture);
+  add_use("sheen/sheenRoughnessTexture", &Material::sheen_roughness_texture);
   properties.push_back(absent_at_standard(material_field("/extensions/KHR_materials_volume/attenuationDistance",
                                                          &Material::attenuation_distance, kPositive)));
   properties.push_back(unlit());
