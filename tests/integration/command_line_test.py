@@ -101,6 +101,7 @@ class UsageTest(CommandLineTest):
                       ["--eye", "0,0,1", "--target", "0,0,0", "--yfov", "180"], ["--background", "1,1"],
                       ["--background", "-1,0,0"], ["--view", "sideways"], ["--exposure", "bright"],
                       ["--tone-map", "purple"], ["--seed", "-1"], ["--seed", "4294967296"], ["--device", "gpu"],
+                      ["--environment-strength", "-1"], ["--environment-rotation", "north"],
                       ["--tracer", "magic"], ["--unknown"], ["--samples", "4", "--samples", "8"]]:
             run = self.run_lightwell("render", "builtin:cornell", "-o", "a.png", *wrong, code=WRONG_USAGE)
             self.assertTrue(any(word in run.stderr for word in wrong if word.startswith("--")), run.stderr)
@@ -155,6 +156,16 @@ class InputTest(CommandLineTest):
         self.refuse("list.gltf", b"[]")
         self.refuse("old.gltf", b'{"asset":{"version":"1.0"}}')
         self.refuse("outside.gltf", b'{"asset":{"version":"2.0"},"buffers":[{"uri":"../../etc/passwd","byteLength":9}]}')
+
+    def test_environments_that_are_no_light(self):
+        infinite = b"PF\n2 1\n-1.0\n" + struct.pack("<6f", 1, 1, 1, float("inf"), 1, 1)
+        for name, content in [("none.hdr", None), ("text.hdr", b"no picture"), ("empty.exr", b""), ("sky.pfm", infinite)]:
+            if content is not None:
+                (self.folder / name).write_bytes(content)
+            run = self.render("a.png", "--environment", name, code=BAD_INPUT)
+            self.assertIn(name, run.stderr)
+            self.assertFalse((self.folder / "a.png").exists())
+            self.run_lightwell("serve", "builtin:cornell", "--port", "0", "--environment", name, code=BAD_INPUT)
 
     def test_a_folder_is_no_scene(self):
         (self.folder / "scene.glb").mkdir()
@@ -243,6 +254,7 @@ class RenderTest(CommandLineTest):
 
     def test_every_choice_renders(self):
         for option in [["--bounces", "0"], ["--bounces", "3"], ["--estimator", "literal"], ["--denoise"],
+                       ["--multiple-scattering"], ["--environment-rotation", "90", "--environment-strength", "2"],
                        ["--shadow-size", "64", "--shadow-filter", "1"], ["--background", "0.1,0.2,0.3"],
                        ["--camera", "0"], ["--eye", "0,1,3", "--target", "0,1,0", "--yfov", "60"],
                        ["--tracer", "embree"], ["--tracer", "compute"], ["--time", "1.5"]]:
