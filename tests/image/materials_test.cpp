@@ -57,6 +57,33 @@ TEST(Textures, ClampedOnesShowTheirEdgeAtEveryLevel) {
   EXPECT_LT(pixels.center().r, 0.01f);
 }
 
+// The example in KHR_texture_transform's text: half a scale, a quarter turn and an offset of one down show the lower
+// left quarter of the picture, and nothing else.
+TEST(Textures, TurnTheWayTheExtensionSays) {
+  auto image = std::make_shared<Image>();
+  image->size_px = {64, 64};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const bool lower_left = x < 32 && y >= 32;
+      for (const int value : {lower_left ? 0 : 255, 0, lower_left ? 255 : 0, 255})
+        image->rgba.push_back(static_cast<std::uint8_t>(value));
+    }
+  Material material = lambert(glm::vec3(1.0f));
+  material.base_color_texture = {
+      .texture = 0, .offset = {0.0f, 1.0f}, .rotation = 1.57079632679f, .scale = glm::vec2(0.5f)};
+  SceneMaker maker;
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material));
+  Scene scene = maker.take();
+  scene.images.push_back(image);
+  scene.textures.push_back({"", 0, {.wrap_s = Wrap::kRepeat, .wrap_t = Wrap::kRepeat}});
+  std::shared_ptr<Mesh> mesh;
+  only_primitive(scene, mesh).uv0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  add_white_sky(scene);
+  const Pixels pixels = render(scene, look_at({0, 0, 3}, {0, 0, 0}, 0.3f), one_bounce());
+  EXPECT_GT(pixels.mean().b, 0.9f);
+  EXPECT_LT(pixels.mean().r, 0.02f);
+}
+
 // Vertex normals so far from the face that the mirror direction lies below it, as a normal map may have it.
 TEST(ShadingNormals, NeverMakeAMirrorBlack) {
   SceneMaker maker;
