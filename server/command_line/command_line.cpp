@@ -9,6 +9,7 @@
 #include "server/command_line/bench_command.h"
 #include "server/command_line/compare_command.h"
 #include "server/command_line/devices_command.h"
+#include "server/command_line/figures_command.h"
 #include "server/command_line/render_command.h"
 #include "server/command_line/serve_command.h"
 
@@ -22,6 +23,7 @@ struct Arguments {
   DevicesArguments devices;
   CompareArguments compare;
   BenchArguments bench;
+  FiguresArguments figures;
 };
 
 constexpr const char* kFooter =
@@ -45,11 +47,13 @@ int parse_and_run(int argc, char** argv) {
       *app.add_subcommand("devices", "List the OpenGL devices and say which one is chosen, and why");
   CLI::App& compare_app = *app.add_subcommand("compare", "Measure how far picture A is from the reference B");
   CLI::App& bench_app = *app.add_subcommand("bench", "Measure this machine");
+  CLI::App& figures_app = *app.add_subcommand("figures", "Make the thesis' figures 6.1 to 6.6 anew");
   add_serve_options(serve_app, arguments.serve);
   add_render_options(render_app, arguments.render);
   add_devices_options(devices_app, arguments.devices);
   add_compare_options(compare_app, arguments.compare);
   add_bench_options(bench_app, arguments.bench);
+  add_figures_options(figures_app, arguments.figures);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -59,7 +63,8 @@ int parse_and_run(int argc, char** argv) {
   if (render_app.parsed()) return run_render(arguments.render);
   if (devices_app.parsed()) return run_devices(arguments.devices);
   if (compare_app.parsed()) return run_compare(arguments.compare);
-  return run_bench(bench_app, arguments.bench);
+  if (bench_app.parsed()) return run_bench(bench_app, arguments.bench);
+  return run_figures(arguments.figures);
 }
 
 }  // namespace

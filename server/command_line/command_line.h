@@ -1,4 +1,4 @@
-// The program `lightwell`: serve, render, devices, compare, bench.
+// The program `lightwell`: serve, render, devices, compare, bench, figures.
 #pragma once
 
 namespace lightwell {

@@ -81,7 +81,8 @@ class HelpTest(CommandLineTest):
         self.assertIn("Exit codes", self.run_lightwell("--help").stdout)
         self.assertIn("lightwell ", self.run_lightwell("--version").stdout)
         for command, option in [("serve", "--port"), ("render", "--indirect-size"), ("devices", "--json"),
-                                ("compare", "--heatmap"), ("bench", "thesis")]:
+                                ("compare", "--heatmap"), ("bench", "thesis"),
+                                ("figures", "--only")]:
             self.assertIn(option, self.run_lightwell(command, "--help").stdout)
 
     def test_wrong_commands(self):

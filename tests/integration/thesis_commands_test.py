@@ -8,7 +8,7 @@ import json
 import unittest
 import xml.etree.ElementTree
 
-from command_line_test import CommandLineTest, FAILED, WRONG_USAGE
+from command_line_test import CommandLineTest, FAILED, WRONG_USAGE, jpeg_size, png_size
 
 
 class BenchThesisTest(CommandLineTest):
@@ -51,6 +51,52 @@ class BenchThesisTest(CommandLineTest):
             run = self.bench(*wrong, code=WRONG_USAGE)
             self.assertIn(wrong[0], run.stderr)
         self.assertIn("none", self.bench("--json", "none/b.json", code=FAILED).stderr)
+
+
+class FiguresTest(CommandLineTest):
+    def figures(self, *arguments, **keywords):
+        return self.run_lightwell("figures", *arguments, "--side", "64", **keywords)
+
+    def test_single_pictures_and_sheets(self):
+        run = self.figures("new/folder", "--only", "6.1,6.6")
+        self.assertIn("2 figures in new/folder", run.stderr)
+        folder = self.folder / "new/folder"
+        expected = ["figure-6.1-direct.png", "figure-6.1.png", "figure-6.1-small.jpg", "figure-6.6.png",
+                    "figure-6.6-small.jpg"]
+        expected += [f"figure-6.1-{samples}-samples-indirect-{side}.png" for samples in [32, 64]
+                     for side in [512, 256, 128]]
+        expected += [f"figure-6.6-{moment}s-{part}.png" for moment in [0, 3, 6, 9]
+                     for part in ["direct", "indirect", "both"]]
+        self.assertEqual(sorted(expected), sorted(path.name for path in folder.iterdir()))
+        self.assertEqual((64, 64), png_size(folder / "figure-6.1-direct.png"))
+        width, height = png_size(folder / "figure-6.1.png")
+        self.assertGreater(width, 3 * 64)
+        self.assertGreater(height, 3 * 64)
+        self.assertEqual((width, height), jpeg_size(folder / "figure-6.1-small.jpg"))
+
+    def test_all_pictures_of_a_figure_are_exposed_alike(self):
+        # Direct and indirect light add up to both only where no picture has an exposure of its own.
+        self.figures("out", "--only", "6.5", "--shadow-size", "64")
+        light = {part: self.mean_light(f"out/figure-6.5-6s-{part}.png") for part in ["direct", "indirect", "both"]}
+        for channel in range(3):
+            self.assertLess(light["direct"][channel], light["both"][channel])
+            self.assertLess(light["indirect"][channel], light["both"][channel])
+
+    def test_more_indirect_light_with_more_bounces(self):
+        for bounces in [0, 3]:
+            self.figures(f"out{bounces}", "--only", "6.3", "--bounces", bounces)
+        name = "figure-6.3-32-samples-indirect-128.png"
+        direct = (self.folder / "out0/figure-6.3-direct.png").read_bytes()
+        self.assertEqual(direct, (self.folder / "out0" / name).read_bytes(), "without bounces only direct light is left")
+        self.assertNotEqual(direct, (self.folder / "out3" / name).read_bytes())
+
+    def test_wrong_usage(self):
+        for wrong in [["--only", "6.7"], ["--samples", "4"], ["--bounces", "inf"], ["--tracer", "magic"]]:
+            self.assertIn(wrong[0], self.figures("out", *wrong, code=WRONG_USAGE).stderr)
+        self.run_lightwell("figures", code=WRONG_USAGE)
+        self.run_lightwell("figures", "out", "--side", "5000", code=WRONG_USAGE)
+        (self.folder / "file").write_text("")
+        self.assertIn("file", self.figures("file", code=FAILED).stderr)
 
 
 if __name__ == "__main__":
