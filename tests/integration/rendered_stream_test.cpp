@@ -59,7 +59,7 @@ double mean_difference(const Image& a, const Image& b) {
   return sum / (static_cast<double>(a.rgba.size()) * 0.75);
 }
 
-json render_request(const json& more) {
+json render_request(const json& more = json::object()) {
   json request{
       {"scene", "cornell"}, {"width", 96}, {"height", 64}, {"settings", {{"samples", 8}, {"indirect_size", 32}}}};
   request.update(more, true);
@@ -91,15 +91,15 @@ TEST_F(RenderedStreamTest, AStillSceneIsRefinedToItsFinalPicture) {
 }
 
 TEST_F(RenderedStreamTest, TheSameRequestGivesTheSameBytes) {
-  const Answer first = post("/v1/render", render_request({}));
+  const Answer first = post("/v1/render", render_request());
   ASSERT_EQ(first.status, 200) << first.body;
   EXPECT_GT(mean(decoded(first.body)), 10.0);
-  EXPECT_EQ(post("/v1/render", render_request({})).body, first.body);
+  EXPECT_EQ(post("/v1/render", render_request()).body, first.body);
   EXPECT_NE(post("/v1/render", render_request({{"settings", {{"seed", 1}}}})).body, first.body);
 }
 
 TEST_F(RenderedStreamTest, ViewsAndEditsShow) {
-  const Image all = decoded(post("/v1/render", render_request({})).body);
+  const Image all = decoded(post("/v1/render", render_request()).body);
   const Image direct = decoded(post("/v1/render", render_request({{"settings", {{"view", "direct"}}}})).body);
   EXPECT_GT(mean_difference(all, direct), 1.0);
   const json lights = json::parse(ask(server_->port(), "GET", "/v1/scenes/cornell").body);
