@@ -1,7 +1,10 @@
 #include "renderer/renderer.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "renderer/check.h"
 #include "renderer/methods/reference.h"
@@ -15,8 +18,10 @@ namespace lightwell {
 
 namespace {
 
-// A share of the way to the new exposure per frame: about half a second at 20 frames a second.
-constexpr float kExposureSmoothing = 0.12f;
+// Exposure follows the light as an eye does, in seconds of the scene; while the scene stands still, of frames like
+// these.
+constexpr double kExposureTime_s = 0.4;
+constexpr double kStillFrame_s = 0.05;
 
 class View : public RenderView {
  public:
@@ -33,10 +38,20 @@ class View : public RenderView {
   }
 
   DisplayPass display;
+  // How much of the way to the exposure of a picture of this moment to go: all of it in the first picture, when the
+  // time jumps, and for a picture that is refined.
+  float exposure_share(double time_s) {
+    const double passed_s = exposed_time_s_ ? std::abs(time_s - *exposed_time_s_) : kLongAgo_s;
+    exposed_time_s_ = time_s;
+    if (accumulated > 0) return 1.0f;
+    return static_cast<float>(1.0 - std::exp(-std::max(passed_s, kStillFrame_s) / kExposureTime_s));
+  }
+
   std::uint32_t accumulated = 0;
-  bool exposed = false;
 
  private:
+  static constexpr double kLongAgo_s = 1e3;
+  std::optional<double> exposed_time_s_;
   gl::ShaderLibrary& shaders_;
   gl::BufferUse buffers_;
   std::optional<ThesisMethod> thesis_;
@@ -186,8 +201,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
       return Error{ErrorKind::kInternal, "frame", "it was wanted no more"};
     }
     view.display.resize(request.size_px);
-    view.display.measure_exposure(picture, view.exposed && view.accumulated == 0 ? kExposureSmoothing : 1.0f);
-    view.exposed = true;
+    view.display.measure_exposure(picture, view.exposure_share(request.time_s));
     if (request.want_display) view.display.run(picture, request.settings);
     state_->timer.mark("display");
     state_->read(view, picture, request, frame);

@@ -210,6 +210,33 @@ TEST(Frames, AccumulatedFramesConverge) {
   EXPECT_LT(sixteen, one / 8.0);
 }
 
+TEST(Frames, ExposureFollowsTheLightInSecondsNotInFrames) {
+  SceneMaker maker;
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  maker.directional({0, 0, -1}, 1.0f);
+  const Scene dim = maker.take();
+  Scene bright = dim;
+  bright.lights[0].intensity = 64.0f;
+  const auto exposure_after_a_second = [&](int frames) {
+    Renderer& renderer = shared_renderer();
+    const auto view = renderer.make_view();
+    FrameRequest request;
+    request.camera = look_at({0, 0, 1}, {0, 0, 0});
+    request.size_px = {16, 16};
+    request.settings = thesis_settings(0);
+    request.settings.exposure_ev.reset();
+    float exposure_ev = renderer.render(dim, request, *view)->exposure_ev;
+    for (int i = 1; i <= frames; ++i) {
+      request.time_s = static_cast<double>(i) / frames;
+      exposure_ev = renderer.render(bright, request, *view)->exposure_ev;
+    }
+    return exposure_ev;
+  };
+  const float at_two = exposure_after_a_second(2), at_twenty = exposure_after_a_second(20);
+  EXPECT_NEAR(at_two, at_twenty, 0.05f);
+  EXPECT_NEAR(at_twenty, std::log2(0.22f / (64.0f * 0.5f / 3.14159f)) + 6.0f * std::exp(-2.5f), 0.15f);
+}
+
 TEST(Frames, BadSettingsAreRefusedByName) {
   Settings settings;
   settings.samples = 0;
