@@ -6,7 +6,7 @@ RunningServer::RunningServer(const ServeOptions& options, MakePictureSource make
     : base_path_(options.base_path),
       tls_(!options.tls_certificate.empty()),
       net_(net_options(options)),
-      service_(options, std::move(make_source)) {
+      service_(options, std::move(make_source), [this] { return net_.connections(); }) {
   net_.start(service_);
 }
 

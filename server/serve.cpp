@@ -57,21 +57,24 @@ bool wait_until_ready(const std::shared_future<SourceFacts>& ready, const StopSi
 
 void run(const ServeOptions& options, const StopSignals& signals) {
   const auto start = std::chrono::steady_clock::now();
-  fmt::print(stderr, "Loading {} and compiling shaders\n", options.scene);
+  set_up_log(options.log_format, options.log_level);
+  log_event(LogLevel::kInfo, "starting", {{"scene", options.scene}});
   RunningServer server(options, renderer_source(options.device, options.tracer));
   if (!wait_until_ready(server.ready(), signals)) return;
   const SourceFacts facts = server.ready().get();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  fmt::print(stderr, "Ready after {:.1f} s: {} ({}), tracer {}\n", took.count(), facts.device, facts.device_why,
-             facts.tracer);
+  log_event(LogLevel::kInfo, "ready",
+            {{"seconds", took.count()}, {"device", facts.device}, {"why", facts.device_why}, {"tracer", facts.tracer}});
   fmt::print("Lightwell is at {}\n", server.url());
   std::fflush(stdout);
   signals.wait();
   signals.give_back();  // who asks twice does not want to wait
+  log_event(LogLevel::kInfo, "stopping", {{"drain_delay_s", options.drain_delay_s}});
   server.announce_drain();
   std::this_thread::sleep_for(std::chrono::duration<double>(options.drain_delay_s));
-  fmt::print(stderr, "Stopping: what is in flight is finished first\n");
-  if (!server.drain(kDrainLimit)) fmt::print(stderr, "Some connections did not end in time\n");
+  const bool all_ended = server.drain(kDrainLimit);
+  log_event(all_ended ? LogLevel::kInfo : LogLevel::kWarning, "stopped",
+            {{"all_ended", std::string(all_ended ? "yes" : "no")}});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "renderer/image_io/environment_file.h"
 #include "renderer/renderer.h"
 #include "server/access/access_control.h"
+#include "server/operations/log.h"
 
 namespace lightwell {
 
@@ -24,7 +25,10 @@ struct ServeLimits {
   int max_sessions = 64;
   int max_connections = 4096;
   int max_viewers_per_session = 128;
-  double session_idle_s = 600.0;  // a session without viewers or requests ends after this
+  int max_sequence_frames = 10'000;                // of one sequence
+  std::uint64_t max_sequence_bytes = 64ull << 30;  // files of all sequences; beyond, no new one is begun
+  double sequence_keep_s = 7.0 * 86'400.0;         // one that has ended is forgotten after this
+  double session_idle_s = 600.0;                   // a session without viewers or requests ends after this
 };
 
 /// What a session starts with unless told otherwise: two bounces, filtered; made to be looked at, not to be the thesis.
@@ -50,7 +54,10 @@ struct ServeOptions {
   std::string tls_certificate;             // PEM, with its chain; empty: plain HTTP
   std::string tls_key;                     // PEM
   double drain_delay_s = 0.0;              // how long a stopping server serves on while it says that it is not ready
-  std::string web_client_dir;              // serves the viewer from this folder; empty: from the binary
+  std::string data_dir;                    // where sequences are kept; empty: there are none
+  LogFormat log_format = LogFormat::kText;
+  LogLevel log_level = LogLevel::kInfo;
+  std::string web_client_dir;  // serves the viewer from this folder; empty: from the binary
   ServeLimits limits;
 };
 

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <condition_variable>
 #include <thread>
+#include <tuple>
 
 #include "server/http/router.h"
+#include "server/operations/log.h"
+#include "server/sequences/sequence_workers.h"
 #include "server/services.h"
 
 namespace lightwell {
@@ -50,11 +53,13 @@ Refusal refusal_of(const protocol::Problem& problem) {
 }  // namespace
 
 struct Service::State {
-  State(const ServeOptions& serve_options, MakePictureSource make_source);
+  State(const ServeOptions& serve_options, MakePictureSource make_source, std::function<int()> open_connections);
 
   void load_scenes();
   Shot warm_up_shot();
   void keep_house();
+  Levels levels();
+  void count(const net::RequestHead* head, int status, double seconds);
   std::variant<Scopes, Refusal> check_access(const net::RequestHead& below,
                                              const std::optional<std::string>& session_id);
   net::Admission admit_stream(const net::RequestHead& head, const std::string& session_id, Scopes scopes);
@@ -64,7 +69,10 @@ struct Service::State {
 
   const ServeOptions options;
   AccessControl access;
+  const std::function<int()> connections;
+  Metrics metrics;
   SceneStore scenes;
+  std::unique_ptr<SequenceStore> sequences;
   SessionStore sessions;
   SessionSurroundings surroundings;
   std::atomic<bool> leaving = false;              // not ready any more
@@ -74,6 +82,8 @@ struct Service::State {
   std::atomic<bool> scenes_loaded = false;
 
   RenderLoop render_loop;
+  std::unique_ptr<SequenceWorkers> sequence_workers;
+  std::atomic<int> renders_waiting = 0;
   std::unique_ptr<WorkerPool> encoders, quick_workers, long_workers;
   http::RouteTable routes;
   std::unique_ptr<Services> services;
@@ -85,29 +95,42 @@ struct Service::State {
   std::thread loader, housekeeper;
 };
 
-Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source)
+Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source,
+                      std::function<int()> open_connections)
     : options(serve_options),
       access(options.access),
+      connections(std::move(open_connections)),
       scenes(options.limits),
+      sequences(options.data_dir.empty() ? nullptr : std::make_unique<SequenceStore>(options, scenes)),
       sessions(options.limits),
       surroundings{{scenes, options.limits, options.settings},
+                   metrics,
                    [this] { render_loop.wake(); },
                    [this] { return render_loop.is_ready() ? render_loop.ready().get().device : std::string(); },
                    [this] {
                      return render_loop.is_ready() ? render_loop.ready().get().methods
                                                    : std::vector<std::string>{"thesis"};
                    }},
-      render_loop(std::move(make_source), [this] { return warm_up_shot(); }),
+      render_loop(
+          std::move(make_source), [this] { return warm_up_shot(); },
+          [this](Share share, const Result<Frame>& frame, double seconds) {
+            if (!frame) return metrics.frame_failed(frame.error().kind);
+            metrics.frame_rendered(*frame, share == Share::kOwn ? Purpose::kStream : Purpose::kRequest, seconds);
+          }),
       encoders(std::make_unique<WorkerPool>(kEncoders,
                                             std::size_t{2} * static_cast<std::size_t>(options.limits.max_sessions))),
       quick_workers(std::make_unique<WorkerPool>(kQuickWorkers, kMostQuickWaiting)),
       long_workers(std::make_unique<WorkerPool>(kLongWorkers, kMostLongWaiting)) {
   services =
-      std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings, leaving});
+      std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings, leaving,
+                                          metrics, sequences.get(), [this] { return levels(); }, renders_waiting});
+  if (sequences) sequence_workers = std::make_unique<SequenceWorkers>(*sequences, render_loop);
   add_health_routes(routes, *services);
   add_scene_routes(routes, *services);
   add_session_routes(routes, *services);
   add_render_routes(routes, *services);
+  add_sequence_routes(routes, *services);
+  add_metrics_routes(routes, *services);
   add_viewer_routes(routes, options.web_client_dir);
   router = std::make_unique<http::Router>(routes,
                                           [this](const net::RequestHead& head) { return access.answer_fields(head); });
@@ -143,8 +166,37 @@ void Service::State::keep_house() {
   while (!stopped.wait_for(lock, kHousekeepingInterval, [this] { return stopping; })) {
     lock.unlock();
     sessions.keep_house(std::chrono::steady_clock::now());
+    if (sequences) sequences->keep_house();
     lock.lock();
   }
+}
+
+Levels Service::State::levels() {
+  Levels levels;
+  std::tie(levels.sessions, levels.viewers) = sessions.size();
+  std::tie(levels.uploaded_scenes, levels.uploaded_bytes) = scenes.uploads();
+  levels.connections = static_cast<std::uint64_t>(connections());
+  levels.renders_waiting = static_cast<std::uint64_t>(renders_waiting.load());
+  levels.frames_waiting = sequences ? sequences->frames_waiting() : 0;
+  levels.ready = render_loop.is_ready() && !leaving;
+  return levels;
+}
+
+/// `head`: null if it was not understood.
+void Service::State::count(const net::RequestHead* head, int status, double seconds) {
+  std::string route = "none", method = "none";
+  if (head) {
+    const auto found = routes.find(*head);
+    if (const auto* known = std::get_if<const http::Route*>(&found)) route = (*known)->path;
+    if (route != "none") method = head->method;  // any other would be a label of the client's making
+  }
+  metrics.request_answered(method, route, status, seconds);
+  const LogLevel level = status == 500 ? LogLevel::kWarning : LogLevel::kDebug;
+  log_event(level, "request",
+            {{"method", method},
+             {"path", head ? head->path : std::string()},
+             {"status", std::int64_t{status}},
+             {"ms", seconds * 1e3}});
 }
 
 std::optional<std::string> Service::State::path_below_base(const std::string& path) const {
@@ -191,8 +243,8 @@ net::Admission Service::State::admit_stream(const net::RequestHead& head, const 
                                  named ? std::string(protocol::kSubprotocol) : std::string()};
 }
 
-Service::Service(const ServeOptions& options, MakePictureSource make_source)
-    : state_(std::make_unique<State>(options, std::move(make_source))) {}
+Service::Service(const ServeOptions& options, MakePictureSource make_source, std::function<int()> connections)
+    : state_(std::make_unique<State>(options, std::move(make_source), std::move(connections))) {}
 
 Service::~Service() {
   stop();
@@ -220,6 +272,7 @@ void Service::stop() {
   if (state_->loader.joinable()) state_->loader.join();
   if (state_->housekeeper.joinable()) state_->housekeeper.join();
   state_->render_loop.stop();  // first: workers wait for it
+  state_->sequence_workers.reset();
   state_->long_workers.reset();
   state_->quick_workers.reset();
   state_->encoders.reset();
@@ -258,14 +311,21 @@ void Service::answer(net::Request request, std::function<void(net::Answer)> done
   const bool quick = std::get<const http::Route*>(found)->effort == http::Effort::kQuick;
   WorkerPool& workers = quick ? *state_->quick_workers : *state_->long_workers;
   auto shared = std::make_shared<net::Request>(std::move(request));
-  const bool taken =
-      workers.try_post([router = state_->router.get(), shared, done] { done(router->respond(std::move(*shared))); });
+  state_->metrics.bytes_received(shared->body.size());
+  const auto start = std::chrono::steady_clock::now();
+  const bool taken = workers.try_post([state = state_.get(), shared, done, start] {
+    net::Answer answer = state->router->respond(*shared);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    state->count(&shared->head, http::status_of(answer.bytes), took.count());
+    done(std::move(answer));
+  });
   if (taken) return;
   request = std::move(*shared);
   refuse(busy("too many requests wait already"));
 }
 
 std::string Service::refusal_response(const Refusal& refusal, bool keep_alive, const net::RequestHead* head) {
+  state_->count(head, refusal.status, 0.0);
   return http::wire_format(http::refusal_response(refusal), keep_alive,
                            head ? state_->access.answer_fields(*head) : http::Fields());
 }

@@ -20,7 +20,8 @@ class SceneRefused : public std::runtime_error {
 class Service : public net::Application {
  public:
   /// Begins to load the scenes and to warm the renderer up, both in threads of their own.
-  Service(const ServeOptions& options, MakePictureSource make_source);
+  /// `connections`: how many are open, for the metrics. Throws std::runtime_error if the data folder cannot be used.
+  Service(const ServeOptions& options, MakePictureSource make_source, std::function<int()> connections);
   ~Service() override;
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

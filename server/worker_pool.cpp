@@ -1,6 +1,6 @@
 #include "server/worker_pool.h"
 
-#include <spdlog/spdlog.h>
+#include "server/operations/log.h"
 
 namespace lightwell {
 
@@ -40,7 +40,7 @@ void WorkerPool::run() {
     try {
       work();
     } catch (const std::exception& error) {  // the end of this work alone
-      spdlog::error("a worker failed: {}", error.what());
+      log_event(LogLevel::kError, "worker_failed", {{"reason", std::string(error.what())}});
     }
   }
 }

@@ -51,4 +51,14 @@ Result<std::vector<std::byte>> encode_ldr(const std::string& format, glm::ivec2 
 Result<std::vector<std::byte>> encode_exr(const FloatImage& image,
                                           const std::map<std::string, std::string>& metadata = {}, bool float32 = true);
 
+/// One layer of a picture with several.
+struct ExrLayer {
+  std::string name;            // its channels are name.R, name.G and name.B; empty: R, G and B
+  std::span<const float> rgb;  // as FloatImage::pixels with 3 channels
+};
+
+/// An .exr of several layers of one size in a single part, 32-bit floats; at least one.
+Result<std::vector<std::byte>> encode_exr_layers(glm::ivec2 size_px, std::span<const ExrLayer> layers,
+                                                 const std::map<std::string, std::string>& metadata = {});
+
 }  // namespace lightwell

@@ -46,6 +46,15 @@ Result<std::vector<std::byte>> encode(const std::string& plugin, const std::stri
   }
 }
 
+OIIO::ImageSpec exr_spec(glm::ivec2 size_px, int channels, const std::map<std::string, std::string>& metadata) {
+  OIIO::ImageSpec spec(size_px.x, size_px.y, channels, OIIO::TypeDesc::FLOAT);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  // Left to itself, OpenImageIO records the time of writing, and the same picture would give other bytes each time.
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
+  for (const auto& [key, value] : metadata) spec.attribute(key, value);
+  return spec;
+}
+
 Status write_file(const std::filesystem::path& path, const std::vector<std::byte>& bytes) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -61,13 +70,27 @@ Result<std::vector<std::byte>> encode_exr(const FloatImage& image, const std::ma
   if (image.channels != 3 && image.channels != 4)
     return invalid_input("channels", std::to_string(image.channels) + " channels given where 3 or 4 are needed");
   if (Status sized = check_size(image.size_px, image.channels, image.pixels.size()); !sized) return sized.error();
-  OIIO::ImageSpec spec(image.size_px.x, image.size_px.y, image.channels,
-                       float32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
-  spec.attribute("oiio:ColorSpace", "Linear");
-  // Left to itself, OpenImageIO records the time of writing, and the same picture would give other bytes each time.
-  spec.attribute("DateTime", "1970:01:01 00:00:00");
-  for (const auto& [key, value] : metadata) spec.attribute(key, value);
+  OIIO::ImageSpec spec = exr_spec(image.size_px, image.channels, metadata);
+  spec.set_format(float32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
   return encode("openexr", "exr", std::move(spec), OIIO::TypeDesc::FLOAT, image.pixels.data());
+}
+
+Result<std::vector<std::byte>> encode_exr_layers(glm::ivec2 size_px, std::span<const ExrLayer> layers,
+                                                 const std::map<std::string, std::string>& metadata) {
+  if (layers.empty()) return invalid_input("layers", "there are none");
+  const std::size_t channels = 3 * layers.size();
+  OIIO::ImageSpec spec = exr_spec(size_px, static_cast<int>(channels), metadata);
+  spec.channelnames.clear();
+  for (const ExrLayer& layer : layers) {
+    if (Status sized = check_size(size_px, 3, layer.rgb.size()); !sized) return sized.error();
+    for (const char* channel : {"R", "G", "B"})
+      spec.channelnames.push_back(layer.name.empty() ? channel : layer.name + "." + channel);
+  }
+  std::vector<float> pixels(channels * layers.front().rgb.size() / 3);
+  for (std::size_t layer = 0; layer < layers.size(); ++layer)
+    for (std::size_t i = 0; i < layers[layer].rgb.size(); ++i)
+      pixels[i / 3 * channels + 3 * layer + i % 3] = layers[layer].rgb[i];
+  return encode("openexr", "exr", std::move(spec), OIIO::TypeDesc::FLOAT, pixels.data());
 }
 
 Result<std::vector<std::byte>> encode_ldr(const std::string& format, glm::ivec2 size_px,

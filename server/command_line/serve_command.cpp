@@ -1,6 +1,8 @@
 #include "server/command_line/serve_command.h"
 
+#include <cstdlib>
 #include <limits>
+#include <map>
 
 #include "server/command_line/add_option.h"
 #include "server/command_line/environment_options.h"
@@ -35,13 +37,24 @@ void add_limit_options(CLI::App& app, ServeLimits& limits) {
   add_mebibytes(app, "--max-upload", limits.max_upload_bytes, "One uploaded scene");
   add_mebibytes(app, "--max-upload-total", limits.max_scene_bytes, "All uploaded scenes together");
   add_integer(app, "--max-scenes", limits.max_scenes, 0, kAnyInt, "Uploaded scenes");
+  add_integer(app, "--max-sequence-frames", limits.max_sequence_frames, 1, 1'000'000, "Frames of one sequence");
+  add_mebibytes(app, "--max-sequence-disk", limits.max_sequence_bytes, "Files of all sequences");
+  const auto seconds = [](const std::string& text) { return parse_number(text, 1.0, 1e9); };
+  add_parsed(app, "--keep-sequences", limits.sequence_keep_s, seconds, "SECONDS",
+             "A sequence that has ended is forgotten after this", "604800");
   add_integer(app, "--max-sessions", limits.max_sessions, 1, kAnyInt, "Sessions at a time");
   add_integer(app, "--max-connections", limits.max_connections, 1, kAnyInt, "Connections at a time");
   add_integer(app, "--max-viewers", limits.max_viewers_per_session, 1, kAnyInt, "Viewers of one session");
-  add_parsed(
-      app, "--session-idle", limits.session_idle_s,
-      [](const std::string& text) { return parse_number(text, 1.0, 1e9); }, "SECONDS",
-      "A session without viewers and requests ends after this", "600");
+  add_parsed(app, "--session-idle", limits.session_idle_s, seconds, "SECONDS",
+             "A session without viewers and requests ends after this", "600");
+}
+
+// Where the XDG base directory specification has state that outlives a program; empty where there is no home.
+std::string default_data_dir() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state && *state == '/') return std::string(state) + "/lightwell";
+  const char* home = std::getenv("HOME");
+  return home && *home == '/' ? std::string(home) + "/.local/state/lightwell" : std::string();
 }
 
 void add_access_options(CLI::App& app, ServeOptions& options) {
@@ -100,6 +113,23 @@ void add_serve_options(CLI::App& app, ServeOptions& options) {
       app, "--drain-delay", options.drain_delay_s,
       [](const std::string& text) { return parse_number(text, 0.0, 3600.0); }, "SECONDS",
       "Told to stop, serve on for so long while not ready, so that a balancer notices", "0");
+  options.data_dir = default_data_dir();
+  app.add_option("--data", options.data_dir, "The folder that sequences are kept in; empty: there are none")
+      ->capture_default_str()
+      ->type_name("FOLDER");
+  const std::map<std::string, LogFormat> formats{{"text", LogFormat::kText}, {"json", LogFormat::kJson}};
+  app.add_option("--log-format", options.log_format, "How standard error is written")
+      ->transform(CLI::CheckedTransformer(formats))
+      ->type_name("text|json")
+      ->default_str("text");
+  const std::map<std::string, LogLevel> levels{{"debug", LogLevel::kDebug},
+                                               {"info", LogLevel::kInfo},
+                                               {"warning", LogLevel::kWarning},
+                                               {"error", LogLevel::kError}};
+  app.add_option("--log-level", options.log_level, "The least that is written; debug: every request")
+      ->transform(CLI::CheckedTransformer(levels))
+      ->type_name("debug|info|warning|error")
+      ->default_str("info");
   app.option_defaults()->group("Light");
   add_environment_options(app, options.environment);
   app.option_defaults()->group("Access");

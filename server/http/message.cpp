@@ -1,5 +1,6 @@
 #include "server/http/message.h"
 
+#include <cstdlib>
 #include <ctime>
 
 namespace lightwell::http {
@@ -54,6 +55,12 @@ std::string wire_format(const Response& response, bool keep_alive, const Fields&
   if (response.status != 204) add("Content-Length", std::to_string(response.body.size()));
   if (!keep_alive) add("Connection", "close");
   return text + "\r\n" + response.body;
+}
+
+int status_of(std::string_view response) {
+  constexpr std::string_view kStart = "HTTP/1.1 ";
+  if (!response.starts_with(kStart) || response.size() < kStart.size() + 3) return 0;
+  return std::atoi(std::string(response.substr(kStart.size(), 3)).c_str());
 }
 
 Fields common_headers() {

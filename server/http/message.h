@@ -40,6 +40,9 @@ Response refusal_response(const net::Refusal& refusal);
 /// The response as it goes over the wire, with the fields every response has and `more`.
 std::string wire_format(const Response& response, bool keep_alive, const Fields& more = {});
 
+/// The status of a response in bytes; 0 if it is none.
+int status_of(std::string_view response);
+
 /// Fields that every response has, whoever writes it.
 Fields common_headers();
 

@@ -5,40 +5,11 @@
 #include <chrono>
 
 #include "protocol/names.h"
-#include "renderer/image_io/image_io.h"
 #include "server/convert.h"
-#include "server/render/jpeg.h"
+#include "server/render/encode_picture.h"
 
 namespace lightwell::http {
 namespace {
-
-constexpr int kQuality = 95;
-
-std::string text_of(const std::vector<std::byte>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-Result<std::string> jpeg_file(const Frame& frame) {
-  const auto file = encode_jpeg(frame.display_rgbx, frame.size_px, kQuality, Chroma::kFull);
-  if (!file) return file.error();
-  return std::string(file->begin(), file->end());
-}
-
-Result<std::string> png_file(const Frame& frame) {
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(frame.display_rgbx.size() / 4 * 3);
-  for (std::size_t i = 0; i + 3 < frame.display_rgbx.size(); i += 4)
-    rgb.insert(rgb.end(), &frame.display_rgbx[i], &frame.display_rgbx[i] + 3);
-  const auto file = encode_ldr("png", frame.size_px, rgb);
-  if (!file) return file.error();
-  return text_of(*file);
-}
-
-Result<std::string> exr_file(const Frame& frame) {
-  const auto file = encode_exr(FloatImage{frame.size_px, 3, frame.linear_rgb});
-  if (!file) return file.error();
-  return text_of(*file);
-}
 
 /// "shadow maps" is no token (RFC 9110), "shadow-maps" is.
 std::string metric_name(std::string_view stage) {
@@ -52,9 +23,7 @@ std::string metric_name(std::string_view stage) {
 
 Response picture_response(const Frame& frame, protocol::ImageFormat format) {
   const auto start = std::chrono::steady_clock::now();
-  Result<std::string> file = format == protocol::ImageFormat::kJpeg  ? jpeg_file(frame)
-                             : format == protocol::ImageFormat::kPng ? png_file(frame)
-                                                                     : exr_file(frame);
+  Result<std::string> file = encode_picture(frame, format);
   if (!file) return problem_response(problem_of(file.error()));
   const std::chrono::duration<double, std::milli> encode_time = std::chrono::steady_clock::now() - start;
 

@@ -88,8 +88,10 @@ Response carry_out(Order order, const Services& services, const Request& request
   const ImageFormat format = order.format;
   auto job = std::make_shared<RenderJob>(std::move(order.shot), order.frames, request.gone);
   std::future<Result<Frame>> result = job->result();
+  ++services.renders_waiting;
   services.render_loop.add(std::move(job), Share::kJobs);
   const Result<Frame> frame = result.get();
+  --services.renders_waiting;
   if (!frame) return http::problem_response(problem_of(frame.error()));
   return http::picture_response(*frame, format);
 }

@@ -1,9 +1,10 @@
 #include "server/http/router.h"
 
 #include <httplib.h>
-#include <spdlog/spdlog.h>
 
 #include <utility>
+
+#include "server/operations/log.h"
 
 namespace lightwell::http {
 namespace {
@@ -167,9 +168,9 @@ struct Router::State : httplib::Server {
     try {
       std::rethrow_exception(failure);
     } catch (const std::exception& error) {
-      spdlog::error("{} {}: {}", request.method, request.path, error.what());
+      log_event(LogLevel::kError, "handler_failed", {{"path", request.path}, {"reason", std::string(error.what())}});
     } catch (...) {
-      spdlog::error("{} {}: an unknown exception", request.method, request.path);
+      log_event(LogLevel::kError, "handler_failed", {{"path", request.path}, {"reason", "an unknown exception"}});
     }
     response = httplib::Response();
     fill(response, problem_response(protocol::make_problem(500, "the server failed to answer this request")));
@@ -193,7 +194,7 @@ Router::Router(const RouteTable& table, MoreFields more_fields)
 
 Router::~Router() = default;
 
-net::Answer Router::respond(net::Request request) {
+net::Answer Router::respond(const net::Request& request) {
   net::Answer answer = state_->respond(request);
   if (!answer.bytes.empty()) return answer;
   const auto problem = protocol::make_problem(500, "the server failed to answer this request");

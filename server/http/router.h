@@ -22,7 +22,7 @@ class Router {
   ~Router();
 
   /// Long work is done on the calling thread. An exception of a handler is a 500 that tells nothing of it.
-  net::Answer respond(net::Request request);
+  net::Answer respond(const net::Request& request);
 
  private:
   struct State;

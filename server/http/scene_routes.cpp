@@ -1,5 +1,6 @@
 #include "protocol/names.h"
 #include "renderer/scene/gltf/edit.h"
+#include "server/operations/log.h"
 #include "server/services.h"
 
 namespace lightwell {
@@ -24,6 +25,7 @@ Response put_scene(const Services& services, const std::string& name, std::strin
         protocol::make_problem(422, "a scene's name is 1 to 64 of a to z, 0 to 9, _ and -, not \"" + name + "\""));
   const auto stored = services.scenes.upload(name, std::as_bytes(std::span(body.data(), body.size())));
   if (!stored) return http::problem_response(stored.problem());
+  log_event(LogLevel::kInfo, "scene_uploaded", {{"scene", name}, {"bytes", static_cast<std::int64_t>(body.size())}});
   services.sessions.scenes_changed();
   Response response = http::json_response(stored->created ? 201 : 200, protocol::to_json(stored->entry));
   if (stored->created) response.headers.emplace_back("Location", services.options.base_path + "/v1/scenes/" + name);

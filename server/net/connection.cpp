@@ -257,7 +257,10 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
 
   asio::awaitable<bool> write_rest(BodySource& rest, std::shared_ptr<std::atomic<bool>> gone,
                                    std::shared_ptr<Exchange> exchange) {
-    rest.set_waker([executor = executor(), exchange] { asio::post(executor, [exchange] { exchange->signal(); }); });
+    // Weakly, or the body would keep alive what keeps it.
+    rest.set_waker([executor = executor(), weak = std::weak_ptr<Exchange>(exchange)] {
+      if (auto woken = weak.lock()) asio::post(executor, [woken] { woken->signal(); });
+    });
     watch_for_hang_up(gone, exchange);
     bool sent = true;
     while (sent && !*gone) {

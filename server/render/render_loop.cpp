@@ -20,6 +20,7 @@ struct Account {
 struct Seat {
   std::shared_ptr<Subject> subject;
   std::shared_ptr<Account> account;
+  Share share;
   std::unique_ptr<RenderView> view;
   bool was_due = false;
 };
@@ -27,13 +28,14 @@ struct Seat {
 /// A source and those it renders for. Lives on the render thread.
 class Studio {
  public:
-  explicit Studio(std::unique_ptr<PictureSource> source) : source_(std::move(source)) {}
+  Studio(std::unique_ptr<PictureSource> source, const RenderLoop::Observer& observer)
+      : source_(std::move(source)), observer_(observer) {}
 
   PictureSource& source() { return *source_; }
 
   void seat(std::shared_ptr<Subject> subject, Share share) {
     auto account = share == Share::kJobs ? jobs_ : std::make_shared<Account>(Account{level_s_});
-    seats_.push_back({std::move(subject), std::move(account), nullptr, false});
+    seats_.push_back({std::move(subject), std::move(account), share, nullptr, false});
   }
 
   void let_go_of_ended() {
@@ -61,8 +63,11 @@ class Studio {
     const SteadyTime start = steady_clock::now();
     level_s_ = std::max(level_s_, seat.account->used_s);
     Result<Shot> shot = seat.subject->take_shot(start);
-    seat.subject->shot_done(shot ? render(*shot, seat.view) : Result<Frame>(shot.error()));
-    seat.account->used_s += std::chrono::duration<double>(steady_clock::now() - start).count();
+    Result<Frame> frame = shot ? render(*shot, seat.view) : Result<Frame>(shot.error());
+    const double seconds = std::chrono::duration<double>(steady_clock::now() - start).count();
+    if (shot) observer_(seat.share, frame, seconds);
+    seat.subject->shot_done(std::move(frame));
+    seat.account->used_s += seconds;
   }
 
   Result<Frame> render(const Shot& shot, std::unique_ptr<RenderView>& view) {
@@ -77,6 +82,7 @@ class Studio {
 
  private:
   std::unique_ptr<PictureSource> source_;
+  const RenderLoop::Observer& observer_;
   std::vector<Seat> seats_;  // their views go before the source
   std::shared_ptr<Account> jobs_ = std::make_shared<Account>();
   double level_s_ = 0.0;  // the account of who was served last: the least of those that wait
@@ -96,13 +102,14 @@ struct RenderLoop::State {
   std::atomic<bool> warm = false;
   std::promise<SourceFacts> ready_promise;
   std::shared_future<SourceFacts> ready = ready_promise.get_future().share();
+  Observer observer;
   std::thread thread;
 };
 
 void RenderLoop::State::run(const MakePictureSource& make_source, const std::function<Shot()>& warm_up) {
   std::optional<Studio> studio;
   try {
-    studio.emplace(make_source());
+    studio.emplace(make_source(), observer);
     std::unique_ptr<RenderView> view;
     if (Result<Frame> frame = studio->render(warm_up(), view); !frame)
       throw std::runtime_error("the first picture failed: " + frame.error().message());
@@ -139,8 +146,9 @@ void RenderLoop::State::serve(Studio& studio) {
   }
 }
 
-RenderLoop::RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up)
+RenderLoop::RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up, Observer observer)
     : state_(std::make_unique<State>()) {
+  state_->observer = std::move(observer);
   state_->thread = std::thread([state = state_.get(), make_source = std::move(make_source),
                                 warm_up = std::move(warm_up)] { state->run(make_source, warm_up); });
 }

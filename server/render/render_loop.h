@@ -15,8 +15,11 @@ enum class Share { kOwn, kJobs };
 
 class RenderLoop {
  public:
+  /// Told of every frame but the warm-up, on the render thread: whose time it took, and how many seconds.
+  using Observer = std::function<void(Share share, const Result<Frame>& frame, double seconds)>;
+
   /// Starts the thread, which makes the source and renders what `warm_up` gives once. `ready` tells when that is done.
-  RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up);
+  RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up, Observer observer);
   ~RenderLoop();  // stops
   RenderLoop(const RenderLoop&) = delete;
   RenderLoop& operator=(const RenderLoop&) = delete;

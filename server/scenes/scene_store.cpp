@@ -1,7 +1,5 @@
 #include "server/scenes/scene_store.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -9,6 +7,8 @@
 #include "renderer/scene/builtin.h"
 #include "renderer/scene/gltf/load_gltf.h"
 #include "server/convert.h"
+#include "server/operations/log.h"
+#include "server/scenes/digest.h"
 
 namespace lightwell {
 namespace {
@@ -29,13 +29,6 @@ std::string scene_name_of(const std::filesystem::path& path) {
   return name.empty() ? "scene" : name;
 }
 
-/// Ready to be shown: lit, if it brings no light of its own; what was left out is in the log.
-std::shared_ptr<const StagedScene> staged(Scene scene, const std::string& name) {
-  for (const std::string& warning : scene.warnings) spdlog::warn("scene {}: {}", name, warning);
-  if (add_default_light(scene)) spdlog::info("scene {} has no light: a sky and a sun were added", name);
-  return std::make_shared<const StagedScene>(std::move(scene));
-}
-
 }  // namespace
 
 void SceneStore::add_builtin_scenes() {
@@ -48,7 +41,7 @@ Status SceneStore::add_builtin(const std::string& name, const EnvironmentChoice&
   if (!scene) return scene.error();
   if (const Status applied = apply_environment(environment, scene->environment); !applied) return applied;
   auto stage = std::make_shared<const StagedScene>(std::move(scene).value());
-  Entry entry{stage->entry(name, true), stage, 0, false};
+  Entry entry{stage->entry(name, true), stage, nullptr};
   std::lock_guard lock(mutex_);
   scenes_.emplace(name, std::move(entry));
   return Done{};
@@ -67,8 +60,8 @@ Result<std::string> SceneStore::add_from_command_line(const std::string& scene, 
   std::string name = scene_name_of(scene);
   const std::vector<std::string>& builtin = builtin_scene_names();
   if (std::find(builtin.begin(), builtin.end(), name) != builtin.end()) name = name.substr(0, 59) + "-file";
-  auto stage = staged(std::move(loaded).value(), name);
-  Entry entry{stage->entry(name, false), stage, 0, false};
+  auto stage = stage_upload(std::move(loaded).value(), name);
+  Entry entry{stage->entry(name, false), stage, nullptr};
   std::lock_guard lock(mutex_);
   scenes_.insert_or_assign(name, std::move(entry));
   return first_ = name;
@@ -81,8 +74,8 @@ std::optional<Problem> SceneStore::refuse_upload(const std::string& name, std::u
   std::uint64_t all_bytes = bytes;
   int count = 1;
   for (const auto& [other, entry] : scenes_) {
-    if (!entry.uploaded || other == name) continue;
-    all_bytes += entry.uploaded_bytes;
+    if (!entry.glb || other == name) continue;
+    all_bytes += entry.glb->size();
     ++count;
   }
   if (count > limits_.max_scenes)
@@ -105,8 +98,8 @@ protocol::Decoded<SceneStore::Stored> SceneStore::upload(const std::string& name
   load_limits.max_texture_bytes = limits_.max_texture_bytes;
   Result<Scene> scene = load_glb(glb, load_limits);
   if (!scene) return problem_of(scene.error());
-  auto stage = staged(std::move(scene).value(), name);
-  Entry entry{stage->entry(name, false), stage, glb.size(), true};
+  auto stage = stage_upload(std::move(scene).value(), name);
+  Entry entry{stage->entry(name, false), stage, std::make_shared<const std::vector<std::byte>>(glb.begin(), glb.end())};
 
   std::lock_guard lock(mutex_);  // and again: others may have stored theirs in the meantime
   if (auto problem = refuse_upload(name, glb.size())) return *problem;
@@ -130,6 +123,28 @@ std::shared_ptr<const StagedScene> SceneStore::find(const std::string& name) con
   return found == scenes_.end() ? nullptr : found->second.scene;
 }
 
+std::string SceneStore::Source::digest() const {
+  return scene_digest(*scene->scene());
+}
+
+std::optional<SceneStore::Source> SceneStore::source(const std::string& name) const {
+  std::lock_guard lock(mutex_);
+  const auto found = scenes_.find(name);
+  if (found == scenes_.end()) return {};
+  return Source{found->second.scene, found->second.glb};
+}
+
+std::pair<std::size_t, std::uint64_t> SceneStore::uploads() const {
+  std::lock_guard lock(mutex_);
+  std::pair<std::size_t, std::uint64_t> sum{0, 0};
+  for (const auto& [name, entry] : scenes_) {
+    if (!entry.glb) continue;
+    ++sum.first;
+    sum.second += entry.glb->size();
+  }
+  return sum;
+}
+
 std::vector<protocol::SceneEntry> SceneStore::entries() const {
   std::lock_guard lock(mutex_);
   std::vector<protocol::SceneEntry> entries;
@@ -139,6 +154,13 @@ std::vector<protocol::SceneEntry> SceneStore::entries() const {
   };
   std::stable_sort(entries.begin(), entries.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return entries;
+}
+
+std::shared_ptr<const StagedScene> stage_upload(Scene scene, const std::string& name) {
+  for (const std::string& warning : scene.warnings)
+    log_event(LogLevel::kWarning, "scene_warning", {{"scene", name}, {"warning", warning}});
+  if (add_default_light(scene)) log_event(LogLevel::kInfo, "default_light_added", {{"scene", name}});
+  return std::make_shared<const StagedScene>(std::move(scene));
 }
 
 Problem no_such_scene(const std::string& name, int status, std::string pointer) {

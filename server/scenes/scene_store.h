@@ -36,6 +36,18 @@ class SceneStore {
   std::optional<protocol::Problem> remove(const std::string& name);
 
   std::shared_ptr<const StagedScene> find(const std::string& name) const;
+
+  /// A scene with where it comes from.
+  struct Source {
+    std::shared_ptr<const StagedScene> scene;
+    std::shared_ptr<const std::vector<std::byte>> glb;  // the upload; null for others
+    /// Of all that its pictures depend on: the same for the same scene, on every server.
+    std::string digest() const;
+  };
+  std::optional<Source> source(const std::string& name) const;
+
+  /// How many uploads there are, and their bytes together.
+  std::pair<std::size_t, std::uint64_t> uploads() const;
   /// First the one from the command line: what a viewer opens; then the built-in ones; then by name.
   std::vector<protocol::SceneEntry> entries() const;
 
@@ -43,8 +55,7 @@ class SceneStore {
   struct Entry {
     protocol::SceneEntry entry;
     std::shared_ptr<const StagedScene> scene;
-    std::uint64_t uploaded_bytes = 0;
-    bool uploaded = false;
+    std::shared_ptr<const std::vector<std::byte>> glb;  // as it was uploaded; null: it was not
   };
 
   Status add_builtin(const std::string& name, const EnvironmentChoice& environment = {});
@@ -55,6 +66,9 @@ class SceneStore {
   std::map<std::string, Entry> scenes_;
   std::string first_;  // from the command line
 };
+
+/// A scene from a file, ready to be shown: lit, if it brings no light of its own; what was left out is in the log.
+std::shared_ptr<const StagedScene> stage_upload(Scene scene, const std::string& name);
 
 /// There is no scene of that name: 404 where it is the resource, 422 where a body names it.
 protocol::Problem no_such_scene(const std::string& name, int status, std::string pointer = {});

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "server/operations/metrics.h"
 #include "server/session/session_state.h"
 #include "server/stream/audience.h"
 #include "server/stream/director.h"
@@ -15,6 +16,7 @@ namespace lightwell {
 /// What all sessions of a server share.
 struct SessionSurroundings {
   SessionRules rules;
+  Metrics& metrics;
   std::function<void()> wake_render_loop;
   std::function<std::string()> device;  // for welcomes: what pictures are made with
   std::function<std::vector<std::string>()> methods;
@@ -26,6 +28,7 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   Session(std::string id, SessionState state, const SessionSurroundings& surroundings);
 
   const std::string& id() const { return id_; }
+  std::size_t viewers() const { return audience_.size(); }
   protocol::Session describe() const;
   /// All of `patch` or nothing.
   protocol::Decoded<protocol::Session> apply(const protocol::SessionPatch& patch);
@@ -50,12 +53,17 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) override;
   protocol::StateUpdate change_of(unsigned members) const override;
   void window_opened() override { surroundings_.wake_render_loop(); }
+  void picture_sent(std::uint64_t bytes) override { surroundings_.metrics.picture_sent(bytes); }
+  void picture_acknowledged(double seconds) override { surroundings_.metrics.picture_acknowledged(seconds); }
   void leave(const Viewer& viewer) override;
 
   // DirectedSession
   std::shared_ptr<const SessionState> state() const override;
   Audience& audience() override { return audience_; }
   bool ended() const override { return ended_; }
+  void picture_encoded(double seconds, std::uint64_t bytes) override {
+    surroundings_.metrics.picture_encoded(seconds, bytes);
+  }
   void wake_render_loop() override { surroundings_.wake_render_loop(); }
 
  private:

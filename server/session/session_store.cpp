@@ -1,5 +1,6 @@
 #include "server/session/session_store.h"
 
+#include "server/operations/log.h"
 #include "server/random_id.h"
 
 namespace lightwell {
@@ -12,6 +13,7 @@ protocol::Decoded<std::shared_ptr<Session>> SessionStore::add(SessionState state
     return protocol::make_problem(
         503, "there are " + std::to_string(limits_.max_sessions) + " sessions already, as many as this server serves");
   sessions_.emplace(session->id(), session);
+  log_event(LogLevel::kInfo, "session_begun", {{"session", session->id()}});
   return session;
 }
 
@@ -32,6 +34,7 @@ bool SessionStore::end(const std::string& id) {
     ended = std::move(found->second);
     sessions_.erase(found);
   }
+  log_event(LogLevel::kInfo, "session_ended", {{"session", id}, {"reason", "asked for"}});
   ended->end(protocol::CloseCode::kSessionEnded, "the session was ended", true);
   return true;
 }
@@ -48,7 +51,10 @@ void SessionStore::keep_house(SteadyTime now) {
       it = is_idle ? sessions_.erase(it) : std::next(it);
     }
   }
-  for (const auto& session : idle) session->end(protocol::CloseCode::kSessionEnded, "nobody watched for long", true);
+  for (const auto& session : idle) {
+    log_event(LogLevel::kInfo, "session_ended", {{"session", session->id()}, {"reason", "idle"}});
+    session->end(protocol::CloseCode::kSessionEnded, "nobody watched for long", true);
+  }
   for (const auto& session : alive) session->audience().check_patience(now);
 }
 
@@ -68,6 +74,13 @@ void SessionStore::scenes_changed() const {
     all = sessions_;
   }
   for (const auto& [id, session] : all) session->scenes_changed();
+}
+
+std::pair<std::size_t, std::size_t> SessionStore::size() const {
+  std::lock_guard lock(mutex_);
+  std::pair<std::size_t, std::size_t> sum{sessions_.size(), 0};
+  for (const auto& [id, session] : sessions_) sum.second += session->viewers();
+  return sum;
 }
 
 }  // namespace lightwell

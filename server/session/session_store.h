@@ -27,6 +27,8 @@ class SessionStore {
 
   /// Ends sessions that nobody has wanted for long, and streams whose clients do not keep up. Called every second.
   void keep_house(SteadyTime now);
+  /// How many there are, and viewers of them.
+  std::pair<std::size_t, std::size_t> size() const;
   void end_all(protocol::CloseCode code, const std::string& reason, bool reconnect);
 
  private:

@@ -142,6 +142,7 @@ void Director::show(const Take& take, const Frame& frame, std::uint64_t number) 
   stats.accumulated = frame.accumulated;
   stats.time_s = take.request.time_s;
   stats.encode_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
+  session_->picture_encoded(stats.encode_ms * 1e-3, picture->file->size());
   session_->audience().show(std::move(picture));
 }
 

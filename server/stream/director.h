@@ -28,6 +28,8 @@ class DirectedSession {
   virtual std::shared_ptr<const SessionState> state() const = 0;
   virtual Audience& audience() = 0;
   virtual bool ended() const = 0;
+  /// A picture was encoded, on whatever thread.
+  virtual void picture_encoded(double seconds, std::uint64_t bytes) = 0;
   /// The render loop should ask again.
   virtual void wake_render_loop() = 0;
 };

@@ -112,7 +112,9 @@ void Viewer::received(const protocol::Ack& ack) {
     std::lock_guard lock(mutex_);
     if (ack.frame > last_frame_)
       return queue_end(protocol::CloseCode::kBadMessage, "an ack of a frame that was never sent", false);
-    while (!in_flight_.empty() && in_flight_.front().frame <= ack.frame) in_flight_.pop_front();
+    for (; !in_flight_.empty() && in_flight_.front().frame <= ack.frame; in_flight_.pop_front())
+      if (in_flight_.front().frame == ack.frame)
+        host_->picture_acknowledged(std::chrono::duration<double>(steady_clock::now() - in_flight_.front().at).count());
     if (waiting_) wake();
   }
   host_->window_opened();
@@ -256,6 +258,7 @@ net::Outgoing Viewer::take_picture() {
   in_flight_.push_back({last_frame_, now});
   sent_times_.push_back(now);
   queue_stats(*picture, now);
+  host_->picture_sent(picture->file->size());
   const auto bytes = protocol::encode_frame_header(header);
   return net::BinaryMessage{std::string(bytes.begin(), bytes.end()), picture->file};
 }

@@ -29,6 +29,9 @@ class ViewerHost {
   virtual std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) = 0;
   /// What viewers are told when these members have changed.
   virtual protocol::StateUpdate change_of(unsigned members) const = 0;
+  virtual void picture_sent(std::uint64_t bytes) = 0;
+  /// So many seconds after it was sent.
+  virtual void picture_acknowledged(double seconds) = 0;
   /// The viewer can take a picture again.
   virtual void window_opened() = 0;
   virtual void leave(const Viewer& viewer) = 0;

@@ -1,27 +1,49 @@
 // The server held against the document that describes it.
+#include <filesystem>
 #include <set>
 
 #include "protocol/openapi_document.h"
+#include "server/random_id.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
 namespace lightwell::test {
 namespace {
 
+ServeOptions options_with_folder() {
+  ServeOptions options = test_options();
+  options.data_dir = (std::filesystem::temp_directory_path() / ("lightwell-" + random_id())).string();
+  return options;
+}
+
 class OpenApiTest : public ServerTest {
  protected:
+  explicit OpenApiTest(const ServeOptions& options = options_with_folder())
+      : ServerTest(options), folder_(options.data_dir) {
+    const json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 0}};
+    sequence_ = json::parse(ask("POST", "/v1/sequences", request).body)["id"];
+    while (ask("GET", "/v1/sequences/" + sequence_ + "/archive").status != 200)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ~OpenApiTest() override { std::filesystem::remove_all(folder_); }
+
   const json document_ = json::parse(protocol::openapi_document());
 
   /// A path with values for its parameters that exist on this server.
   std::string concrete(std::string path) const {
     const std::pair<std::string, std::string> values[] = {
-        {"{file}", "index.html"}, {"{name}", "cornell"}, {"{id}", session_}};
+        {"{file}", "index.html"},
+        {"{name}", "cornell"},
+        {"{id}", path.starts_with("/v1/sequences") ? sequence_ : session_},
+        {"{number}", "0"}};
     for (const auto& [name, value] : values)
       if (const auto at = path.find(name); at != std::string::npos) path.replace(at, name.size(), value);
     return path;
   }
 
   const std::string session_ = make_session();
+  const std::string folder_;
+  std::string sequence_;
 };
 
 std::set<std::string> methods_of(const json& path_item) {

@@ -1,7 +1,9 @@
 // Every refusal that the OpenAPI document shows is one that the server gives, in those words.
+#include <filesystem>
 #include <regex>
 
 #include "protocol/openapi_document.h"
+#include "server/random_id.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
@@ -105,6 +107,37 @@ void ask_what_means_nothing(Answers& answers) {
   answers["upgrade"] = asked.ask("GET", "/v1/sessions/" + asked.session() + "/stream");
 }
 
+void ask_for_sequences(Answers& answers) {
+  answers["no_folder"] = Asked().until_ready().ask("GET", "/v1/sequences");
+  const auto folder = std::filesystem::temp_directory_path() / ("lightwell-" + random_id());
+  ServeOptions options = test_options();
+  options.data_dir = folder.string();
+  options.limits.max_sequence_frames = 100;
+  options.limits.max_sequence_bytes = 1;
+  Asked asked(options);
+  asked.until_ready();
+  const auto submit = [&](const json& change) {
+    json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 0}};
+    request.update(change);
+    return asked.ask("POST", "/v1/sequences", request.dump());
+  };
+  const std::string done = "/v1/sequences/" + json::parse(submit(json::object()).body)["id"].get<std::string>();
+  while (asked.ask("GET", done + "/archive").status != 200) std::this_thread::sleep_for(milliseconds(10));
+  answers["view"] = asked.ask("GET", done + "/frames/0?view=depth");
+  answers["frame"] = asked.ask("GET", done + "/frames/120");
+  answers["sequence"] = asked.ask("GET", "/v1/sequences/x");
+  answers["disk"] = submit({{"fps", 25}});
+  answers["too_many_frames"] = submit({{"last_frame", 20000}});
+  answers["keyframes"] = submit({{"keyframes", {{{"path", "/x"}, {"times_s", {1, 1}}, {"values", {1, 2}}}}}});
+  asked.ask("DELETE", done);
+  asked.studio->render_ms = 1000;
+  const std::string slow = "/v1/sequences/" + json::parse(submit({{"last_frame", 9}}).body)["id"].get<std::string>();
+  answers["not_finished"] = asked.ask("GET", slow + "/frames/9");
+  answers["not_done"] = asked.ask("GET", slow + "/archive");
+  asked.ask("DELETE", slow);
+  std::filesystem::remove_all(folder);
+}
+
 void ask_for_too_much(Answers& answers) {
   ServeOptions options = test_options();
   options.limits.max_triangles = 1;
@@ -197,8 +230,8 @@ std::map<std::string, json> documented() {
 
 TEST(Refusals, AreThoseOfTheDocument) {
   Answers answers;
-  for (const auto& ask_for : {ask_what_is_malformed, ask_what_means_nothing, ask_for_too_much, ask_too_often,
-                              ask_without_leave, ask_at_the_wrong_time})
+  for (const auto& ask_for : {ask_what_is_malformed, ask_what_means_nothing, ask_for_sequences, ask_for_too_much,
+                              ask_too_often, ask_without_leave, ask_at_the_wrong_time})
     ask_for(answers);
   const auto examples = documented();
   for (const auto& [name, example] : examples) {

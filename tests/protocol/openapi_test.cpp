@@ -6,6 +6,7 @@
 #include <set>
 
 #include "protocol/codec.h"
+#include "protocol/sequence.h"
 
 namespace lightwell::protocol {
 namespace {
@@ -91,6 +92,7 @@ TEST(OpenApi, OperationsHaveANameOfTheirOwnAndEveryParameterOfTheirPath) {
 TEST(OpenApi, ExamplesOfRequestsAreRead) {
   expect_examples_are_read<RenderRequest>("/v1/render", "post", parse_render_request);
   expect_examples_are_read<SessionRequest>("/v1/sessions", "post", parse_session_request);
+  expect_examples_are_read<SequenceRequest>("/v1/sequences", "post", parse_sequence_request);
   expect_examples_are_read<SessionPatch>("/v1/sessions/{id}", "patch", parse_session_patch);
 }
 
@@ -142,6 +144,11 @@ TEST(OpenApi, ListsEveryMemberOfWhatIsWritten) {
   EXPECT_EQ(names_of(schema("SessionRequest")["properties"]), names_of(to_json(SessionRequest{})));
   EXPECT_EQ(names_of(schema("RenderRequest")["properties"]), names_of(to_json(RenderRequest{})));
   EXPECT_EQ(names_of(schema("Session")["properties"]), names_of(to_json(Session{})));
+  EXPECT_EQ(names_of(schema("SequenceRequest")["properties"]), names_of(to_json(SequenceRequest{})));
+  EXPECT_EQ(names_of(schema("Keyframes")["properties"]), names_of(to_json(Keyframes{})));
+  Sequence sequence;
+  sequence.problem.emplace();
+  EXPECT_EQ(names_of(schema("Sequence")["properties"]), names_of(to_json(sequence)));
   EXPECT_EQ(names_of(schema("SceneEntry")["properties"]), names_of(to_json(SceneEntry{})));
   EXPECT_EQ(names_of(schema("SceneList")["properties"]), names_of(to_json(std::span<const SceneEntry>())));
 }

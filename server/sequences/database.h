@@ -1,0 +1,85 @@
+// A thin cover over SQLite: statements with values, rows with columns. Errors are std::runtime_error that name the
+// file: the database is ours, and nothing from outside makes it fail.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace lightwell {
+
+/// Not thread-safe: callers take turns. Several processes may have the same file open.
+class Database {
+ public:
+  /// Creates the file where there is none.
+  explicit Database(const std::filesystem::path& path);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  /// One or several statements without values or rows.
+  void execute(const char* sql);
+  /// Rows that the last statement changed.
+  int changes() const;
+
+ private:
+  friend class Statement;
+  [[noreturn]] void fail(const char* doing) const;
+
+  std::string path_;
+  sqlite3* handle_ = nullptr;
+};
+
+/// One statement, run once: bind, then `next` until it gives false.
+class Statement {
+ public:
+  Statement(Database& database, const char* sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  /// Values for ?1, ?2, ... in order.
+  Statement& bind(const std::string& text);
+  Statement& bind(std::int64_t number);
+  Statement& bind(double number);
+
+  /// True if there is a row to read.
+  bool next();
+  /// Runs it to its end.
+  void run() {
+    while (next()) {
+    }
+  }
+
+  std::string text(int column) const;
+  std::int64_t integer(int column) const;
+
+ private:
+  Database& database_;
+  sqlite3_stmt* handle_ = nullptr;
+  int bound_ = 0;
+};
+
+/// All or nothing: what is not committed is rolled back.
+class Transaction {
+ public:
+  explicit Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+
+  void commit() {
+    database_.execute("COMMIT");
+    done_ = true;
+  }
+
+ private:
+  Database& database_;
+  bool done_ = false;
+};
+
+}  // namespace lightwell
