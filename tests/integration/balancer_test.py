@@ -1,0 +1,131 @@
+"""Three server processes behind Debian's haproxy with the configuration of setup/deploy. Argument: the program's path."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from service_test import ROOT, Server, free_port, small  # noqa: E402  (takes the program's path from the arguments)
+
+HAPROXY = shutil.which("haproxy") or "/usr/sbin/haproxy"
+
+
+class BalancerTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.servers = [Server("--drain-delay", "3", "--max-request-rate", "0", data=f"{self.folder.name}/data")
+                        for _ in range(3)]
+        for server in self.servers:
+            server.wait_until_ready()
+        self.proxy_port = free_port()
+        text = ROOT.joinpath("setup/deploy/haproxy.cfg").read_text()
+        for number, server in enumerate(self.servers, 1):
+            text = text.replace(f"127.0.0.1:900{number}", f"127.0.0.1:{server.port}")
+        configuration = pathlib.Path(self.folder.name, "haproxy.cfg")
+        configuration.write_text(text)
+        self.proxy = subprocess.Popen([HAPROXY, "-f", configuration], stderr=subprocess.PIPE,
+                                      env={**os.environ, "LIGHTWELL_BIND": f"127.0.0.1:{self.proxy_port}"})
+        deadline = time.monotonic() + 15
+        while self.ask("GET", "/v1/scenes")[0] != 200:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.1)
+        time.sleep(1.5)  # until all three have been looked after
+
+    def tearDown(self):
+        self.proxy.kill()
+        self.proxy.wait()
+        self.proxy.stderr.close()
+        for server in self.servers:
+            if server.process.poll() is None:
+                server.stop()
+        self.folder.cleanup()
+
+    def ask(self, method, path, body=None):
+        """Of whichever server the balancer chooses."""
+        return Server.ask(self, method, path, body)
+
+    context = None
+
+    @property
+    def url(self):
+        return f"http://localhost:{self.proxy_port}"
+
+    def begin_sessions(self, count):
+        """Each with an edit of its own, by which it is known again."""
+        sessions = {}
+        for number in range(count):
+            session = json.loads(self.ask("POST", "/v1/sessions", {**small(), "playing": False})[2])["id"]
+            self.assertEqual(self.ask("PATCH", f"/v1/sessions/{session}", {"time_s": number})[0], 200)
+            sessions[session] = number
+        return sessions
+
+    def home_of(self, session):
+        homes = [server for server in self.servers
+                 if server.process.poll() is None and server.ask("GET", f"/v1/sessions/{session}")[0] == 200]
+        self.assertEqual(len(homes), 1)
+        return homes[0]
+
+    def test_a_killed_server_takes_no_other_session_and_no_frame_with_it(self):
+        sessions = self.begin_sessions(12)
+        homes = {session: self.home_of(session) for session in sessions}
+        self.assertEqual(len(set(homes.values())), 3, "the sessions are not spread")
+        for session, number in sessions.items():  # sticky: each is found again, whoever is asked in between
+            self.assertEqual(json.loads(self.ask("GET", f"/v1/sessions/{session}")[2])["time_s"], number)
+
+        requests = [small(last_frame=24, settings={"samples": 4, "indirect_size": 16, "seed": seed}) for seed in range(4)]
+        sequences = [json.loads(self.ask("POST", "/v1/sequences", request)[2])["id"] for request in requests]
+        while sum(json.loads(self.ask("GET", f"/v1/sequences/{each}")[2])["frames_done"] for each in sequences) < 20:
+            time.sleep(0.05)
+        victim = self.servers[1]
+        victim.stop(signal.SIGKILL)
+
+        for session, number in sessions.items():
+            if homes[session] is not victim:
+                self.assertEqual(json.loads(self.ask("GET", f"/v1/sessions/{session}")[2])["time_s"], number)
+        deadline = time.monotonic() + 120
+        for each in sequences:
+            while (state := json.loads(self.ask("GET", f"/v1/sequences/{each}")[2]))["state"] != "done":
+                self.assertLess(time.monotonic(), deadline, state)
+                time.sleep(0.2)
+            self.assertEqual(state["frames_done"], 25)
+            status, _, archive = self.ask("GET", f"/v1/sequences/{each}/archive")
+            self.assertEqual((status, archive.count(b"PK\x01\x02")), (200, 25))
+        # A session that was on the killed server is gone, and said to be: its client makes another like it.
+        time.sleep(1.5)
+        lost = next(session for session, home in homes.items() if home is victim)
+        self.assertEqual(self.ask("GET", f"/v1/sessions/{lost}")[0], 404)
+        self.assertEqual(self.ask("POST", "/v1/sessions", small())[0], 201)
+
+    def test_a_server_is_drained_without_a_broken_request(self):
+        failures, answered = [], []
+        stop = threading.Event()
+
+        def keep_asking():
+            while not stop.is_set():
+                status = self.ask("POST", "/v1/render", small())[0]
+                (answered if status == 200 else failures).append(status)
+
+        askers = [threading.Thread(target=keep_asking) for _ in range(4)]
+        for asker in askers:
+            asker.start()
+        time.sleep(1)
+        self.servers[2].process.send_signal(signal.SIGTERM)
+        code = self.servers[2].process.wait(timeout=60)
+        time.sleep(1)
+        stop.set()
+        for asker in askers:
+            asker.join()
+        self.assertEqual(code, 0)
+        self.assertEqual(failures, [])
+        self.assertGreater(len(answered), 20)
+
+
+if __name__ == "__main__":
+    unittest.main(warnings="ignore")
