@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 #include "server/running_server.h"
@@ -59,7 +60,8 @@ void run(const ServeOptions& options, const StopSignals& signals) {
   const auto start = std::chrono::steady_clock::now();
   set_up_log(options.log_format, options.log_level);
   log_event(LogLevel::kInfo, "starting", {{"scene", options.scene}});
-  RunningServer server(options, renderer_source(options.device, options.tracer));
+  RunningServer server(options,
+                       with_fault(renderer_source(options.device, options.tracer), std::getenv("LIGHTWELL_FAULT")));
   if (!wait_until_ready(server.ready(), signals)) return;
   const SourceFacts facts = server.ready().get();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;

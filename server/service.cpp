@@ -114,6 +114,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
       render_loop(
           std::move(make_source), [this] { return warm_up_shot(); },
           [this](Share share, const Result<Frame>& frame, double seconds) {
+            if (!frame && frame.error().kind == ErrorKind::kDeviceLost) metrics.device_rebuilt();
             if (!frame) return metrics.frame_failed(frame.error().kind);
             metrics.frame_rendered(*frame, share == Share::kOwn ? Purpose::kStream : Purpose::kRequest, seconds);
           }),

@@ -1,5 +1,10 @@
 #include "server/render/picture_source.h"
 
+#include <atomic>
+#include <cstdlib>
+#include <string_view>
+
+#include "renderer/gl/gl.h"
 #include "renderer/tracing/embree/embree_tracer.h"
 #include "renderer/tracing/tracer.h"
 
@@ -26,11 +31,42 @@ class RendererSource : public PictureSource {
   std::unique_ptr<RenderView> make_view() override { return renderer_.make_view(); }
 
   Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view) override {
-    return renderer_.render(scene, request, view);
+    Result<Frame> frame = renderer_.render(scene, request, view);
+    if (const char* why = device_loss()) return Error{ErrorKind::kDeviceLost, "", why};
+    return frame;
   }
 
  private:
+  /// What the device says of itself after a frame; null: nothing bad.
+  static const char* device_loss() {
+    if (glGetGraphicsResetStatus() != GL_NO_ERROR) return "the graphics context was reset";
+    constexpr GLenum kContextLost = 0x0507;
+    for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError()) {
+      if (error == kContextLost) return "the graphics context was lost";
+      if (error == GL_OUT_OF_MEMORY) return "the graphics device has no memory left";
+    }
+    return nullptr;
+  }
+
   Renderer renderer_;
+};
+
+/// Loses its device once, after so many frames of this and earlier ones.
+class FaultySource : public PictureSource {
+ public:
+  FaultySource(std::unique_ptr<PictureSource> source, std::shared_ptr<std::atomic<int>> frames_left)
+      : source_(std::move(source)), frames_left_(std::move(frames_left)) {}
+
+  SourceFacts facts() override { return source_->facts(); }
+  std::unique_ptr<RenderView> make_view() override { return source_->make_view(); }
+  Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view) override {
+    if ((*frames_left_)-- == 0) return Error{ErrorKind::kDeviceLost, "", "LIGHTWELL_FAULT says so"};
+    return source_->render(scene, request, view);
+  }
+
+ private:
+  std::unique_ptr<PictureSource> source_;
+  std::shared_ptr<std::atomic<int>> frames_left_;
 };
 
 }  // namespace
@@ -42,6 +78,15 @@ MakePictureSource renderer_source(const std::string& device, const std::string& 
     options.tracer = tracer;
     options.make_native_tracer = [] { return make_embree_tracer(); };
     return std::make_unique<RendererSource>(options);
+  };
+}
+
+MakePictureSource with_fault(MakePictureSource make_source, const char* fault) {
+  constexpr std::string_view kDeviceLost = "device-lost@";
+  if (!fault || !std::string_view(fault).starts_with(kDeviceLost)) return make_source;
+  const auto frames_left = std::make_shared<std::atomic<int>>(std::atoi(fault + kDeviceLost.size()));
+  return [make_source = std::move(make_source), frames_left] {
+    return std::make_unique<FaultySource>(make_source(), frames_left);
   };
 }
 

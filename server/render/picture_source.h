@@ -33,4 +33,8 @@ using MakePictureSource = std::function<std::unique_ptr<PictureSource>()>;
 /// The renderer of this project, with Embree as its native tracer.
 MakePictureSource renderer_source(const std::string& device, const std::string& tracer);
 
+/// For tests of what must never happen: with a `fault` of "device-lost@N" the device is lost once, after N frames.
+/// Null, or anything else: `make_source` as it is.
+MakePictureSource with_fault(MakePictureSource make_source, const char* fault);
+
 }  // namespace lightwell

@@ -26,6 +26,13 @@ Result<Shot> RenderJob::take_shot(SteadyTime) {
 }
 
 void RenderJob::shot_done(Result<Frame> frame) {
+  const bool lost = !frame && frame.error().kind == ErrorKind::kDeviceLost;
+  if (lost && !tried_again_) {  // on the device that is set up anew, from the beginning
+    tried_again_ = true;
+    done_ = 0;
+    sum_ = Frame();
+    return;
+  }
   if (!frame) return end(std::move(frame));
   add_up(*frame);
   if (++done_ < frames_) return;

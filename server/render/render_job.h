@@ -11,7 +11,8 @@ namespace lightwell {
 
 class RenderJob : public Subject {
  public:
-  /// Renders `frames` of the very same shot, each adding to the picture. `gone` (may be null) calls it off.
+  /// Renders `frames` of the very same shot, each adding to the picture; once more if the device is lost meanwhile.
+  /// `gone` (may be null) calls it off.
   RenderJob(Shot shot, std::uint32_t frames, std::shared_ptr<std::atomic<bool>> gone);
   /// A job let go of before its end gives an error.
   ~RenderJob() override;
@@ -32,6 +33,7 @@ class RenderJob : public Subject {
   const std::uint32_t frames_;
   std::shared_ptr<std::atomic<bool>> gone_;
   std::uint32_t done_ = 0;
+  bool tried_again_ = false;
   Frame sum_;  // stages, rays and milliseconds so far
   bool ended_ = false;
   std::promise<Result<Frame>> promise_;

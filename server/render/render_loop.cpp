@@ -6,6 +6,8 @@
 #include <mutex>
 #include <thread>
 
+#include "server/operations/log.h"
+
 namespace lightwell {
 namespace {
 
@@ -28,8 +30,8 @@ struct Seat {
 /// A source and those it renders for. Lives on the render thread.
 class Studio {
  public:
-  Studio(std::unique_ptr<PictureSource> source, const RenderLoop::Observer& observer)
-      : source_(std::move(source)), observer_(observer) {}
+  Studio(const MakePictureSource& make_source, const RenderLoop::Observer& observer)
+      : make_source_(make_source), observer_(observer), source_(make_source()) {}
 
   PictureSource& source() { return *source_; }
 
@@ -72,18 +74,30 @@ class Studio {
 
   Result<Frame> render(const Shot& shot, std::unique_ptr<RenderView>& view) {
     try {
+      if (!source_) source_ = make_source_();
       if (!view) view = source_->make_view();
-      return source_->render(*shot.scene, shot.request, *view);
-    } catch (const std::exception& error) {
-      view.reset();
+      Result<Frame> frame = source_->render(*shot.scene, shot.request, *view);
+      if (!frame && frame.error().kind == ErrorKind::kDeviceLost) give_up_device(view, frame.error().what);
+      return frame;
+    } catch (const std::exception& error) {  // no memory, a context that cannot be made
+      give_up_device(view, error.what());
       return Error{ErrorKind::kInternal, "renderer", error.what()};
     }
   }
 
  private:
-  std::unique_ptr<PictureSource> source_;
+  /// Everything that lives on the device goes, views first; the next frame sets it up again. The subjects stay.
+  void give_up_device(std::unique_ptr<RenderView>& view, const std::string& why) {
+    log_event(LogLevel::kError, "device_lost", {{"reason", why}});
+    view.reset();
+    for (Seat& seat : seats_) seat.view.reset();
+    source_.reset();
+  }
+
+  const MakePictureSource& make_source_;
   const RenderLoop::Observer& observer_;
-  std::vector<Seat> seats_;  // their views go before the source
+  std::unique_ptr<PictureSource> source_;  // null after the device was lost, until the next frame
+  std::vector<Seat> seats_;                // their views go before the source
   std::shared_ptr<Account> jobs_ = std::make_shared<Account>();
   double level_s_ = 0.0;  // the account of who was served last: the least of those that wait
 };
@@ -109,7 +123,7 @@ struct RenderLoop::State {
 void RenderLoop::State::run(const MakePictureSource& make_source, const std::function<Shot()>& warm_up) {
   std::optional<Studio> studio;
   try {
-    studio.emplace(make_source(), observer);
+    studio.emplace(make_source, observer);
     std::unique_ptr<RenderView> view;
     if (Result<Frame> frame = studio->render(warm_up(), view); !frame)
       throw std::runtime_error("the first picture failed: " + frame.error().message());

@@ -12,7 +12,8 @@ using std::chrono::steady_clock;
 
 // Of the method reference in a picture shown in place of another method's: with fewer it would be noisier.
 constexpr std::uint32_t kFewestReferenceFrames = 32;
-constexpr int kSmallPicture = 256 * 256;  // pixels: halved chroma saves little and shows
+constexpr auto kDevicePause = std::chrono::milliseconds(500);  // after the device was lost
+constexpr int kSmallPicture = 256 * 256;                       // pixels: halved chroma saves little and shows
 
 }  // namespace
 
@@ -22,6 +23,7 @@ Director::Director(std::shared_ptr<DirectedSession> session, WorkerPool& encoder
 SteadyTime Director::due_at(SteadyTime now) {
   const std::shared_ptr<const SessionState> state = session_->state();
   if (state->revision == failed_revision_) return kNever;  // it would fail again
+  if (now < retry_at_) return retry_at_;
   if (!session_->audience().wants_picture(in_the_making_)) return kNever;
   const SteadyTime next_frame = take_.start + options_.least_frame_time;
   if (!take_.state || state->revision != take_.state->revision)
@@ -94,7 +96,11 @@ void Director::shot_done(Result<Frame> frame) {
     --in_the_making_;
     accumulated_ = 0;
     if (session_->state()->revision != take_.state->revision) return;  // given up, for it is out of date
-    failed_revision_ = take_.state->revision;
+    const bool lost = frame.error().kind == ErrorKind::kDeviceLost;    // not the picture's fault
+    if (lost)
+      retry_at_ = steady_clock::now() + kDevicePause;
+    else
+      failed_revision_ = take_.state->revision;
     return session_->audience().report(problem_of(frame.error()));
   }
   accumulated_ = take_.kind == Kind::kFresh ? 1 : frame->accumulated;

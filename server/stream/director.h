@@ -72,6 +72,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   std::uint32_t accumulated_ = 0;  // frames in the picture
   bool in_reference_ = false;      // the picture is made by the method reference, whatever the session's is
   std::uint64_t failed_revision_ = 0;
+  SteadyTime retry_at_{};
   std::uint64_t next_number_ = 1;
   std::atomic<int> in_the_making_ = 0;  // pictures rendered or to be, that viewers have not got yet
 };

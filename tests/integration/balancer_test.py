@@ -1,6 +1,5 @@
 """Three server processes behind Debian's haproxy with the configuration of setup/deploy. Argument: the program's path."""
 import json
-import os
 import pathlib
 import shutil
 import signal
@@ -26,12 +25,12 @@ class BalancerTest(unittest.TestCase):
             server.wait_until_ready()
         self.proxy_port = free_port()
         text = ROOT.joinpath("setup/deploy/haproxy.cfg").read_text()
+        text = text.replace("127.0.0.1:8080", f"127.0.0.1:{self.proxy_port}")
         for number, server in enumerate(self.servers, 1):
             text = text.replace(f"127.0.0.1:900{number}", f"127.0.0.1:{server.port}")
         configuration = pathlib.Path(self.folder.name, "haproxy.cfg")
         configuration.write_text(text)
-        self.proxy = subprocess.Popen([HAPROXY, "-f", configuration], stderr=subprocess.PIPE,
-                                      env={**os.environ, "LIGHTWELL_BIND": f"127.0.0.1:{self.proxy_port}"})
+        self.proxy = subprocess.Popen([HAPROXY, "-f", configuration], stderr=subprocess.PIPE)
         deadline = time.monotonic() + 15
         while self.ask("GET", "/v1/scenes")[0] != 200:
             self.assertLess(time.monotonic(), deadline)

@@ -18,7 +18,9 @@ struct FakeStudio {
   std::atomic<int> render_ms = 1;
   std::atomic<bool> failing = false;
   std::atomic<bool> throwing = false;
-  std::atomic<int> views = 0;  // alive
+  std::atomic<bool> losing = false;  // the device: once
+  std::atomic<int> sources = 0;      // made
+  std::atomic<int> views = 0;        // alive
   std::atomic<int> pictures = 0;
 
   std::vector<FrameRequest> requests() const {
@@ -32,7 +34,7 @@ struct FakeStudio {
 
 class FakeSource : public PictureSource {
  public:
-  explicit FakeSource(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) {}
+  explicit FakeSource(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) { ++studio_->sources; }
 
   SourceFacts facts() override { return {"a fake device", "a test", "none", {"thesis"}}; }
 
@@ -41,6 +43,7 @@ class FakeSource : public PictureSource {
   Result<Frame> render(const Scene&, const FrameRequest& request, RenderView& render_view) override {
     auto& view = static_cast<View&>(render_view);
     std::this_thread::sleep_for(std::chrono::milliseconds(studio_->render_ms));
+    if (studio_->losing.exchange(false)) return Error{ErrorKind::kDeviceLost, "", "the fake device is lost"};
     if (studio_->throwing) throw std::runtime_error("the fake source was told to throw");
     if (studio_->failing) return Error{ErrorKind::kUnsupported, "scene", "the fake source was told to fail"};
     ++studio_->pictures;

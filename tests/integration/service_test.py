@@ -196,6 +196,23 @@ class RestartTest(unittest.TestCase):
             third.stop()
 
 
+class FaultTest(unittest.TestCase):
+    def test_a_lost_device_is_set_up_again(self):
+        os.environ["LIGHTWELL_FAULT"] = "device-lost@3"
+        try:
+            server = Server().wait_until_ready()
+        finally:
+            del os.environ["LIGHTWELL_FAULT"]
+        session = json.loads(server.ask("POST", "/v1/sessions", small(playing=False))[2])["id"]
+        pictures = [server.ask("GET", f"/v1/sessions/{session}/frame?format=png") for _ in range(6)]
+        self.assertEqual([status for status, _, _ in pictures], [200] * 6)
+        self.assertEqual(len({picture for _, _, picture in pictures}), 1)
+        self.assertIn(b"lightwell_device_rebuilds_total 1\n", server.ask("GET", "/metrics")[2])
+        self.assertEqual([event["reason"] for event in server.log_events() if event["event"] == "device_lost"],
+                         ["LIGHTWELL_FAULT says so"])
+        server.stop()
+
+
 class ExamplesTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -389,6 +389,21 @@ TEST_F(StreamTest, ReportsAPictureThatFailsAndGoesOnWhenItCan) {
   EXPECT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.input_seq == 2; }));
 }
 
+TEST_F(StreamTest, SessionsGoOnWhenTheDeviceIsLost) {
+  const std::string session = make_session({{"scene", "helicopters"}});
+  StreamClient client(server_.port(), session);
+  client.hello();
+  ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.frame >= 3; }));
+  studio_->losing = true;
+  EXPECT_EQ(client.next_text("error")["problem"]["status"], 503);
+  client.input(1, {{"settings", {{"samples", 5}}}});
+  EXPECT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.input_seq == 1; }));
+  EXPECT_EQ(studio_->sources, 2);
+  studio_->losing = true;  // whichever picture it hits: a request is tried again by itself
+  EXPECT_EQ(ask("POST", "/v1/render", {{"scene", "cornell"}, {"width", 8}, {"height", 8}}).status, 200);
+  EXPECT_NE(ask("GET", "/metrics").body.find("lightwell_device_rebuilds_total 2\n"), std::string::npos);
+}
+
 TEST_F(StreamTest, SessionsShareTheDeviceFairly) {
   studio_->render_ms = 5;
   std::vector<std::thread> threads;
