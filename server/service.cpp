@@ -179,7 +179,7 @@ Levels Service::State::levels() {
   levels.connections = static_cast<std::uint64_t>(connections());
   levels.renders_waiting = static_cast<std::uint64_t>(renders_waiting.load());
   levels.frames_waiting = sequences ? sequences->frames_waiting() : 0;
-  levels.ready = render_loop.is_ready() && !leaving;
+  levels.ready = render_loop.is_ready() && scenes_loaded && !leaving;
   return levels;
 }
 
