@@ -112,7 +112,7 @@ struct PathTracerPass::Slots {
         radiance("path radiance", std::uint64_t{paths} * sizeof(glm::vec4)),
         slots("path slots", std::uint64_t{paths} * 4),
         counts("path counts", 4 * (1 + std::uint64_t{chunks_of(paths)}), use),
-        hit_texels("path hits", GL_R32UI),
+        hit_texels("path hits", GL_RGBA32UI),
         visible_texels("visible lights", GL_R32UI),
         pending_texels("pending light", GL_RGBA32UI),
         radiance_texels("path radiance", GL_RGBA32F),
@@ -187,6 +187,7 @@ void PathTracerPass::trace_wave(FrameContext& frame, const LightTable& lights, c
     frame.tracer.closest_hit(s.to->rays, paths, s.hits);
     frame.timer.mark("trace");
     paths = pack(paths);
+    frame.rays += paths;
     frame.timer.mark("pack");
   }
   accumulate(frame, wave);

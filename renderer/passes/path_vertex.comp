@@ -22,7 +22,7 @@ layout(local_size_x = 64) in;
 
 layout(binding = UNIT_PATH_SLOTS) uniform usamplerBuffer slots;      // where the paths are that go on
 layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;        // 2 texels a ray
-layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;        // 5 texels a hit
+layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;        // 4 words a texel, 5 words a hit
 layout(binding = UNIT_PATH_STATES) uniform samplerBuffer states_in;  // throughput; density of the ray's direction
 layout(binding = UNIT_PATH_PIXELS) uniform usamplerBuffer paths_in;
 layout(std430, binding = BINDING_PATH_RAYS) writeonly buffer Rays { Ray rays[]; };
@@ -182,6 +182,20 @@ void pass_through(uint slot, Path path, Hit hit) {
   paths[slot] = pack_path(path.pixel, path.depth);
 }
 
+// Two wide fetches in place of five narrow ones: a record begins at any of a texel's words.
+Hit fetch_hit(int index) {
+  const int word = 5 * index;
+  const uvec4 a = texelFetch(hit_words, word >> 2);
+  const uvec4 b = texelFetch(hit_words, (word >> 2) + 1);
+  const int shift = word & 3;
+  const uvec4 once = uvec4(a.yzw, b.x);
+  const uvec4 twice = uvec4(a.zw, b.xy);
+  const uvec4 thrice = uvec4(a.w, b.xyz);
+  const uvec4 first = shift < 2 ? (shift == 0 ? a : once) : (shift == 2 ? twice : thrice);
+  const uint last = shift < 2 ? (shift == 0 ? b.x : b.y) : (shift == 2 ? b.z : b.w);
+  return Hit(uintBitsToFloat(first.x), first.y, first.z, uintBitsToFloat(first.w), uintBitsToFloat(last));
+}
+
 void main() {
   const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
   if (slot >= path_count) return;
@@ -190,9 +204,7 @@ void main() {
   const vec4 direction = texelFetch(ray_texels, 2 * from + 1);
   const vec4 state = texelFetch(states_in, from);
   const uint packed_path = texelFetch(paths_in, from).x;
-  const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, 5 * from).x), texelFetch(hit_words, 5 * from + 1).x,
-                      texelFetch(hit_words, 5 * from + 2).x, uintBitsToFloat(texelFetch(hit_words, 5 * from + 3).x),
-                      uintBitsToFloat(texelFetch(hit_words, 5 * from + 4).x));
+  const Hit hit = fetch_hit(from);
   Path path = Path(Ray(origin.xyz, origin.w, direction.xyz, direction.w), state.xyz, state.w,
                    path_pixel(packed_path), path_depth(packed_path));
   if (hit.t < 0.0) {

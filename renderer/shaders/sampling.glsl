@@ -27,30 +27,33 @@ uint owen_scramble_reversed(uint x, uint seed) {
 
 uint owen_scramble(uint x, uint seed) { return bitfieldReverse(owen_scramble_reversed(bitfieldReverse(x), seed)); }
 
-// The second Sobol dimension without a table: multiplication by the Pascal matrix over GF(2) in five steps (Ahmed 2024).
-uint sobol_second_dimension(uint index) {
+// The second Sobol dimension without a table, its bits reversed: multiplication by the Pascal matrix over GF(2) in five
+// steps (Ahmed 2024).
+uint sobol_second_dimension_reversed(uint index) {
   index ^= index >> 16;
   index ^= (index & 0xff00ff00u) >> 8;
   index ^= (index & 0xf0f0f0f0u) >> 4;
   index ^= (index & 0xccccccccu) >> 2;
   index ^= (index & 0xaaaaaaaau) >> 1;
-  return bitfieldReverse(index);
+  return index;
 }
 
 float unit_interval(uint bits) { return float(bits >> 8) * (1.0 / 16777216.0); }  // [0, 1)
 
 // Point `index` of an Owen-scrambled, shuffled Sobol (0,2)-sequence: Burley 2020, "Practical hash-based Owen scrambling".
 // Different seeds give independent sequences, so that further dimensions are further calls.
+// Of the scrambled numbers only the reversed bits are made, for a software device takes long to reverse them.
 vec2 sobol_2d(uint index, uint seed) {
   const uint shuffled = owen_scramble(index, hash(seed));
-  const uint first = owen_scramble(bitfieldReverse(shuffled), hash(seed ^ 0xa511e9b3u));
-  const uint second = owen_scramble(sobol_second_dimension(shuffled), hash(seed ^ 0x63d83595u));
+  const uint first = bitfieldReverse(owen_scramble_reversed(shuffled, hash(seed ^ 0xa511e9b3u)));
+  const uint second =
+      bitfieldReverse(owen_scramble_reversed(sobol_second_dimension_reversed(shuffled), hash(seed ^ 0x63d83595u)));
   return vec2(unit_interval(first), unit_interval(second));
 }
 
 float sobol_1d(uint index, uint seed) {
   const uint shuffled = owen_scramble(index, hash(seed));
-  return unit_interval(owen_scramble(bitfieldReverse(shuffled), hash(seed ^ 0xa511e9b3u)));
+  return unit_interval(bitfieldReverse(owen_scramble_reversed(shuffled, hash(seed ^ 0xa511e9b3u))));
 }
 
 // An orthonormal frame whose third column is `normal`: Duff et al. 2017, "Building an orthonormal basis, revisited".
