@@ -8,6 +8,7 @@ const kFlags = [
   "--disable-component-update", "--disable-sync",
 ];
 const kWithinMs = 30000;
+const kFinalWithinMs = 120000;  // dozens of frames, of a scene whose shaders may be new: no bound on speed, but on patience
 
 export const open_browser = () => chromium.launch({ executablePath: kChromium, args: kFlags });
 
@@ -50,7 +51,7 @@ export class ViewerPage {
 
   /** Waits for the picture that nothing finer will follow. */
   async final_picture() {
-    return this.until("the final picture", () => this.stage(), (stage) => stage.final === "true");
+    return this.until("the final picture", () => this.stage(), (stage) => stage.final === "true", kFinalWithinMs);
   }
 
   /** The picture's mean brightness (0..255) and a coarse copy of it, 32 x 32 grey values. */
