@@ -49,11 +49,15 @@ class StopSignals {
   sigset_t before_;
 };
 
-/// False if a signal came first.
-bool wait_until_ready(const std::shared_future<SourceFacts>& ready, const StopSignals& signals) {
-  while (ready.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    if (signals.wait_for(kReadyPoll)) return false;
-  return true;
+bool is_set(const std::shared_future<SourceFacts>& ready) {
+  return ready.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+/// True if a signal came first, or at the same time: it is taken, and nobody else will see it.
+bool was_signalled_before(const std::shared_future<SourceFacts>& ready, const StopSignals& signals) {
+  while (!is_set(ready))
+    if (signals.wait_for(kReadyPoll)) return true;
+  return false;
 }
 
 void run(const ServeOptions& options, const StopSignals& signals) {
@@ -62,14 +66,15 @@ void run(const ServeOptions& options, const StopSignals& signals) {
   log_event(LogLevel::kInfo, "starting", {{"scene", options.scene}});
   RunningServer server(options,
                        with_fault(renderer_source(options.device, options.tracer), std::getenv("LIGHTWELL_FAULT")));
-  if (!wait_until_ready(server.ready(), signals)) return;
+  const bool signalled = was_signalled_before(server.ready(), signals);
+  if (!is_set(server.ready())) return;  // nobody has been served yet
   const SourceFacts facts = server.ready().get();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   log_event(LogLevel::kInfo, "ready",
             {{"seconds", took.count()}, {"device", facts.device}, {"why", facts.device_why}, {"tracer", facts.tracer}});
   fmt::print("Lightwell is at {}\n", server.url());
   std::fflush(stdout);
-  signals.wait();
+  if (!signalled) signals.wait();
   signals.give_back();  // who asks twice does not want to wait
   log_event(LogLevel::kInfo, "stopping", {{"drain_delay_s", options.drain_delay_s}});
   server.announce_drain();
