@@ -18,11 +18,11 @@ layout(local_size_x = 64) in;
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 #include "shaders/light_sampling.glsl"
+#include "shaders/next_event.glsl"
+#include "shaders/fetch_hit.glsl"
 #include "shaders/path.glsl"
 
 layout(binding = UNIT_PATH_SLOTS) uniform usamplerBuffer slots;      // where the paths are that go on
-layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;        // 2 texels a ray
-layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;        // 4 words a texel, 5 words a hit
 layout(binding = UNIT_PATH_STATES) uniform samplerBuffer states_in;  // throughput; density of the ray's direction
 layout(binding = UNIT_PATH_PIXELS) uniform usamplerBuffer paths_in;
 layout(std430, binding = BINDING_PATH_RAYS) writeonly buffer Rays { Ray rays[]; };
@@ -38,17 +38,6 @@ uniform vec2 strategies; // of sampling lights and of sampling the BRDF: 1 each;
 
 const uint kRouletteAfter = 3u;       // bounces
 const float kMostSurvival = 0.98;
-
-const Ray kNoRay = Ray(vec3(0.0), 0.0, vec3(0.0, 1.0, 0.0), -1.0);
-
-float greatest(vec3 v) { return max(v.x, max(v.y, v.z)); }
-
-// The share of a sample of density `own` where another strategy has density `other`: Veach's power heuristic. `other` is 0
-// where it cannot find the light.
-float mis_weight(float own, float other) {
-  const float ratio = other / max(own, 1e-30);
-  return 1.0 / (1.0 + ratio * ratio);
-}
 
 // Of light found by a ray that a BRDF sampled, where sampling the lights has density `light_pdf`.
 float weight_of_found_light(float brdf_pdf, float light_pdf) {
@@ -102,23 +91,6 @@ void add_emission(Path path, Hit hit, HitPoint point) {
   add_light(path, path.throughput * point.surface.emission * weight, seen);
 }
 
-// Off the surface on the side of `direction`, well over the rounding of a hit.
-vec3 lifted(Path path, HitPoint point, Hit hit, vec3 direction) {
-  const vec3 size = abs(point.position_ws);
-  const float offset_m = 1e-5 * (max(size.x, max(size.y, size.z)) + hit.t);
-  const float side = dot(direction, point.geometric_normal_ws) >= 0.0 ? 1.0 : -1.0;
-  return point.position_ws + side * offset_m * point.geometric_normal_ws;
-}
-
-// To just before the light: aimed from where the ray begins, for from the surface it would pierce a near light's plane
-// sooner than at its end.
-Ray shadow_ray(vec3 origin_ws, vec3 position_ws, TableSample at) {
-  if (at.distance_m >= kInfinitelyFar) return Ray(origin_ws, 0.0, at.to_light_ws, at.distance_m);
-  const vec3 to_light = position_ws + at.to_light_ws * at.distance_m - origin_ws;
-  const float distance_m = length(to_light);
-  return Ray(origin_ws, 0.0, to_light / max(distance_m, 1e-20), distance_m * (1.0 - 1e-4));
-}
-
 // The part of f cos(theta) that counts: shading and geometric normal must agree on which side a direction is.
 vec3 reflected(HitPoint point, vec3 out_direction, vec3 in_direction, vec3 in_ws) {
   const bool agree = in_direction.z * dot(in_ws, point.geometric_normal_ws) > 0.0;
@@ -138,7 +110,8 @@ void sample_lights(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, ve
   const float weight = weight_of_sampled_light(at.pdf, brdf_pdf(point.brdf, out_direction, in_direction));
   if (lit) light = path.throughput * reflected(point, out_direction, in_direction, at.to_light_ws) * at.value * weight;
   const bool worthwhile = greatest(light) > 0.0;
-  if (worthwhile) ray = shadow_ray(lifted(path, point, hit, at.to_light_ws), point.position_ws, at);
+  const vec3 origin_ws = lifted(point.position_ws, point.geometric_normal_ws, hit.t, at.to_light_ws);
+  if (worthwhile) ray = shadow_ray(origin_ws, point.position_ws, at);
   const bool direct = path.depth == 0u && at.pdf <= 0.0;
 #else
   const bool direct = false;
@@ -161,7 +134,8 @@ void go_on(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_d
     alive = alive && sobol_1d(sample_number, decision_seed(pixel_seed, path.depth, kDecisionSurvival)) < survival;
     throughput /= max(survival, 1e-20);
   }
-  rays[slot] = alive ? Ray(lifted(path, point, hit, in_ws), 0.0, in_ws, 1e30) : kNoRay;
+  const vec3 origin_ws = lifted(point.position_ws, point.geometric_normal_ws, hit.t, in_ws);
+  rays[slot] = alive ? Ray(origin_ws, 0.0, in_ws, 1e30) : kNoRay;
   states[slot] = vec4(throughput, pdf);
   paths[slot] = alive ? pack_path(path.pixel, path.depth + 1u) : kDeadPath;
 }
@@ -182,31 +156,14 @@ void pass_through(uint slot, Path path, Hit hit) {
   paths[slot] = pack_path(path.pixel, path.depth);
 }
 
-// Two wide fetches in place of five narrow ones: a record begins at any of a texel's words.
-Hit fetch_hit(int index) {
-  const int word = 5 * index;
-  const uvec4 a = texelFetch(hit_words, word >> 2);
-  const uvec4 b = texelFetch(hit_words, (word >> 2) + 1);
-  const int shift = word & 3;
-  const uvec4 once = uvec4(a.yzw, b.x);
-  const uvec4 twice = uvec4(a.zw, b.xy);
-  const uvec4 thrice = uvec4(a.w, b.xyz);
-  const uvec4 first = shift < 2 ? (shift == 0 ? a : once) : (shift == 2 ? twice : thrice);
-  const uint last = shift < 2 ? (shift == 0 ? b.x : b.y) : (shift == 2 ? b.z : b.w);
-  return Hit(uintBitsToFloat(first.x), first.y, first.z, uintBitsToFloat(first.w), uintBitsToFloat(last));
-}
-
 void main() {
   const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
   if (slot >= path_count) return;
   const int from = int(texelFetch(slots, int(slot)).x);
-  const vec4 origin = texelFetch(ray_texels, 2 * from);
-  const vec4 direction = texelFetch(ray_texels, 2 * from + 1);
   const vec4 state = texelFetch(states_in, from);
   const uint packed_path = texelFetch(paths_in, from).x;
   const Hit hit = fetch_hit(from);
-  Path path = Path(Ray(origin.xyz, origin.w, direction.xyz, direction.w), state.xyz, state.w,
-                   path_pixel(packed_path), path_depth(packed_path));
+  Path path = Path(fetch_ray(from), state.xyz, state.w, path_pixel(packed_path), path_depth(packed_path));
   if (hit.t < 0.0) {
     leave_scene(path);
     end_path(slot);
