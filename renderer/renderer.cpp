@@ -109,6 +109,7 @@ struct Renderer::State {
       : context(gl::Context::create(options.device)),
         timer(context->device().software),
         tracer(make_tracer(options, context->device().software)),
+        triangle_groups([options, software = context->device().software] { return make_tracer(options, software); }),
         buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
         camera("camera", sizeof(CameraBlock)) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -123,6 +124,7 @@ struct Renderer::State {
   gl::ShaderLibrary shaders;
   gl::StageTimer timer;
   std::unique_ptr<Tracer> tracer;
+  TriangleGroups triangle_groups;
   gl::BufferUse buffers;
   DeviceScene device_scene;
   gl::Buffer camera;
@@ -186,15 +188,19 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const Pose pose = pose_at(scene, request.time_s);
     state_->device_scene.prepare(scene, pose, request.settings.multiple_scattering);
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
-    state_->tracer->update({pose.instances, coverage});
+    const TraceScene trace_scene{pose.instances, coverage};
+    state_->tracer->update(trace_scene);
     view.accumulated = request.accumulate ? view.accumulated : 0;
     const bool paths = traces_paths(request.settings);  // which have a jitter of their own
     state_->bind_frame(scene, request, paths ? glm::vec2(0.0f) : pixel_jitter(view.accumulated));
     state_->timer.mark("scene");
 
-    FrameContext context{
-        state_->device_scene, pose,          request.settings,   request.size_px, view.accumulated, request.accumulate,
-        *state_->tracer,      state_->timer, request.is_unwanted};
+    FrameContext context{state_->device_scene, pose,
+                         request.settings,     request.size_px,
+                         view.accumulated,     request.accumulate,
+                         *state_->tracer,      state_->triangle_groups,
+                         trace_scene,          state_->timer,
+                         request.is_unwanted};
     const Picture& picture = paths ? view.reference().render(context, scene) : view.thesis().render(context);
     if (context.abandoned) {
       view.accumulated = 0;

@@ -20,6 +20,8 @@ class Tracer;
 
 enum class Method { kThesis, kRealtime, kReference };
 enum class Estimator { kCorrected, kLiteral };
+/// isSimilar of the thesis: depths that differ by less than the threshold, or by more, as it is printed.
+enum class Similarity { kCorrected, kLiteral };
 enum class ViewKind { kFinal, kDirect, kIndirect, kAlbedo, kNormal, kDepth, kOcclusionDistance };
 enum class ToneMap { kNeutral, kLinear };
 /// How `reference` finds lights that have a size: samples of the lights and rays that hit them, weighted together, or
@@ -33,11 +35,13 @@ constexpr int kUnlimitedBounces = 1 << 20;
 /// unknown.
 std::optional<Method> method_from_name(std::string_view name);
 std::optional<Estimator> estimator_from_name(std::string_view name);
+std::optional<Similarity> similarity_from_name(std::string_view name);
 std::optional<ViewKind> view_kind_from_name(std::string_view name);
 std::optional<ToneMap> tone_map_from_name(std::string_view name);
 std::optional<LightStrategy> light_strategy_from_name(std::string_view name);
 std::string_view name_of(Method method);
 std::string_view name_of(Estimator estimator);
+std::string_view name_of(Similarity similarity);
 std::string_view name_of(ViewKind view);
 std::string_view name_of(ToneMap tone_map);
 std::string_view name_of(LightStrategy strategy);
@@ -49,6 +53,13 @@ struct Settings {
   int samples = 32;         // directions per pixel of the indirect map, 1..4096
   int bounces = 1;          // 0: direct only; 1: first bounce; ... 64, or kUnlimitedBounces
   int indirect_size = 128;  // the indirect map's longer side in pixels, 8..4096
+  int patch = 1;            // side of the patches that share directions, pixels of the indirect map: 1, 2, 4, 8 or 16
+  int triangle_groups = 1;  // the nearest triangle of each group is a patch's candidate, 1..64
+  float normal_threshold = 0.9f;  // cosine above which normals are similar, -1..1
+  float depth_threshold = 0.05f;  // relative difference below which depths are similar, 0..10
+  Similarity similarity = Similarity::kCorrected;
+  bool trace_missed =
+      true;  // a pixel that none of its candidates lies before traces that ray itself (not in the thesis)
   Estimator estimator = Estimator::kCorrected;
   ViewKind view = ViewKind::kFinal;
   std::optional<float> exposure_ev;  // fixed exposure (linear scale 2^ev); none: median luminance, smoothed in time

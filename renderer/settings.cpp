@@ -1,5 +1,7 @@
 // Names and ranges of the settings, in one place for the command line and the API.
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +17,8 @@ using Names = std::array<std::pair<Value, std::string_view>, N>;
 constexpr Names<Method, 3> kMethods = {
     {{Method::kThesis, "thesis"}, {Method::kRealtime, "realtime"}, {Method::kReference, "reference"}}};
 constexpr Names<Estimator, 2> kEstimators = {{{Estimator::kCorrected, "corrected"}, {Estimator::kLiteral, "literal"}}};
+constexpr Names<Similarity, 2> kSimilarities = {
+    {{Similarity::kCorrected, "corrected"}, {Similarity::kLiteral, "literal"}}};
 constexpr Names<ViewKind, 7> kViews = {{{ViewKind::kFinal, "final"},
                                         {ViewKind::kDirect, "direct"},
                                         {ViewKind::kIndirect, "indirect"},
@@ -54,6 +58,9 @@ std::optional<Method> method_from_name(std::string_view name) {
 std::optional<Estimator> estimator_from_name(std::string_view name) {
   return from_name(kEstimators, name);
 }
+std::optional<Similarity> similarity_from_name(std::string_view name) {
+  return from_name(kSimilarities, name);
+}
 std::optional<ViewKind> view_kind_from_name(std::string_view name) {
   return from_name(kViews, name);
 }
@@ -69,6 +76,9 @@ std::string_view name_of(Method method) {
 std::string_view name_of(Estimator estimator) {
   return to_name(kEstimators, estimator);
 }
+std::string_view name_of(Similarity similarity) {
+  return to_name(kSimilarities, similarity);
+}
 std::string_view name_of(ViewKind view) {
   return to_name(kViews, view);
 }
@@ -80,6 +90,20 @@ std::string_view name_of(LightStrategy strategy) {
   return to_name(kLightStrategies, strategy);
 }
 
+// The patches and what is similar within them.
+Status check_patches(const Settings& settings, glm::ivec2 size_px) {
+  if (Status patch = check_range("patch", settings.patch, 1, 16); !patch) return patch;
+  if (!std::has_single_bit(static_cast<unsigned>(settings.patch)))
+    return invalid_input("patch", std::to_string(settings.patch) + " is not 1, 2, 4, 8 or 16");
+  if (settings.patch > 1 && settings.patch > std::min({settings.indirect_size, size_px.x, size_px.y}))
+    return invalid_input("patch", std::to_string(settings.patch) + " is larger than the picture");
+  if (!(settings.normal_threshold >= -1.0f && settings.normal_threshold <= 1.0f))
+    return invalid_input("normal-threshold", "it must be a cosine, from -1 to 1");
+  if (!(settings.depth_threshold >= 0.0f && settings.depth_threshold <= 10.0f))
+    return invalid_input("depth-threshold", "it must be from 0 to 10");
+  return check_range("triangle-groups", settings.triangle_groups, 1, 64);
+}
+
 Status check_settings(const Settings& settings, glm::ivec2 size_px) {
   const bool unlimited = settings.bounces == kUnlimitedBounces && settings.method == Method::kReference;
   const Status checks[] = {check_range("width", size_px.x, 1, 16384),
@@ -88,7 +112,8 @@ Status check_settings(const Settings& settings, glm::ivec2 size_px) {
                            check_range("bounces", unlimited ? 0 : settings.bounces, 0, 64),
                            check_range("indirect-size", settings.indirect_size, 8, 4096),
                            check_range("shadow-size", settings.shadow_size, 64, 4096),
-                           check_range("shadow-filter", settings.shadow_filter, 1, 15)};
+                           check_range("shadow-filter", settings.shadow_filter, 1, 15),
+                           check_patches(settings, size_px)};
   for (const Status& check : checks)
     if (!check) return check;
   if (settings.shadow_filter % 2 == 0)

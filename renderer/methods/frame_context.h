@@ -5,6 +5,7 @@
 #include "renderer/passes/device_scene.h"
 #include "renderer/renderer.h"
 #include "renderer/tracing/tracer.h"
+#include "renderer/tracing/triangle_groups.h"
 
 namespace lightwell {
 
@@ -16,6 +17,8 @@ struct FrameContext {
   std::uint32_t frame_number;  // within an accumulation; 0 for the first
   bool accumulate;
   Tracer& tracer;
+  TriangleGroups& triangle_groups;  // to be updated by whom needs them
+  const TraceScene& trace_scene;    // what the tracer was updated with
   gl::StageTimer& timer;
   const std::function<bool()>& is_unwanted;  // may be empty
   std::uint64_t rays = 0;                    // traced in this frame, counted by the method

@@ -7,11 +7,21 @@ namespace lightwell {
 
 namespace {
 
-// Rays in flight at once: 32 MiB of rays on the device, whatever the settings.
-constexpr std::uint32_t kMostRays = 1u << 20;
+// Records of the occlusion map at once, and candidates of patches: 32 to 96 MiB on the device, whatever the settings.
+constexpr std::uint32_t kMostRecords = 1u << 20, kMostCandidates = 1u << 22;
 
-std::uint32_t directions_per_batch(const IndirectMapGrid& grid, int samples) {
-  return std::clamp(kMostRays / grid.most_slots(), 1u, static_cast<std::uint32_t>(samples));
+// Every pixel may turn out to be a patch of its own, beside those of the map.
+std::uint32_t most_patches(const IndirectMapGrid& grid, const Settings& settings) {
+  const auto side = static_cast<std::uint32_t>(grid.patch_side);
+  const bool shared = side > 1 || settings.triangle_groups > 1;
+  return grid.most_slots() / (side * side) + (shared ? grid.most_slots() : 0);
+}
+
+std::uint32_t directions_per_batch(const IndirectMapGrid& grid, const Settings& settings) {
+  const std::uint32_t by_records = kMostRecords / grid.most_slots();
+  const std::uint32_t by_candidates =
+      kMostCandidates / (most_patches(grid, settings) * static_cast<std::uint32_t>(settings.triangle_groups));
+  return std::clamp(std::min(by_records, by_candidates), 1u, static_cast<std::uint32_t>(settings.samples));
 }
 
 // The van der Corput and Halton points: where in its block the representative pixel lies in the n-th frame.
@@ -23,6 +33,7 @@ float radical_inverse(std::uint32_t n, std::uint32_t base) {
 
 IndirectMapGrid make_grid(const FrameContext& frame) {
   IndirectMapGrid grid = IndirectMapGrid::over(frame.size_px, frame.settings.indirect_size);
+  grid.patch_side = frame.settings.patch;
   if (frame.frame_number > 0)
     grid.jitter = {radical_inverse(frame.frame_number, 2), radical_inverse(frame.frame_number, 3)};
   return grid;
@@ -34,13 +45,16 @@ ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : g_buffer_pass_(shaders),
       shadow_maps_pass_(shaders),
       active_blocks_pass_(shaders),
+      patches_pass_(shaders, buffers),
       directions_pass_(shaders, buffers),
       hit_light_pass_(shaders),
       gather_pass_(shaders),
       filter_pass_(shaders),
       add_maps_pass_(shaders),
       compose_pass_(shaders),
-      occlusion_(buffers) {}
+      occlusion_(buffers),
+      candidates_("candidates", 0, buffers),
+      candidates_of_group_("candidates of a group", 0, buffers) {}
 
 const Picture& ThesisMethod::render(FrameContext& frame) {
   const IndirectMapGrid grid = make_grid(frame);
@@ -61,10 +75,15 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
                            ShadowMapsPass::layers_for(frame.pose));
   compose_pass_.resize(g_buffer_pass_.g_buffer().depth);
-  const std::uint32_t most_rays = grid.most_slots() * directions_per_batch(grid, frame.settings.samples);
+  const std::uint32_t batch = directions_per_batch(grid, frame.settings);
   active_blocks_pass_.resize(grid);
+  patches_pass_.resize(grid);
+  const std::uint32_t most_rays = most_patches(grid, frame.settings) * batch;
   directions_pass_.resize(most_rays);
-  occlusion_.resize(most_rays);
+  occlusion_.resize(grid.most_slots() * batch);
+  const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
+  if (groups > 1 || grid.patch_side > 1) candidates_.reserve(std::uint64_t{most_rays} * groups * sizeof(Hit));
+  if (groups > 1) candidates_of_group_.reserve(std::uint64_t{most_rays} * sizeof(Hit));
   gather_pass_.resize(grid.map_size_px);
   filter_pass_.resize(grid.map_size_px);
   if (all_bounces_.image && all_bounces_.image.size_px() == grid.map_size_px) return;
@@ -80,7 +99,7 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
     return all_bounces_;
   }
   traced_ = nullptr;
-  active_blocks_ = &active_blocks_pass_.run(g_buffer, grid);
+  find_patches(frame, g_buffer, grid);
   for (int bounce = 1; bounce <= frame.settings.bounces; ++bounce) {
     gather_bounce(frame, g_buffer, shadows, grid, bounce);
     if (frame.settings.denoise) {
@@ -94,34 +113,61 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
   return all_bounces_;
 }
 
+// Scaling down (5.1), and which patch each pixel refers to (5.2).
+void ThesisMethod::find_patches(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid) {
+  active_blocks_ = &active_blocks_pass_.run(g_buffer, grid);
+  patches_ = &patches_pass_.run(g_buffer, grid, *active_blocks_, frame.settings);
+  if (frame.settings.triangle_groups > 1)
+    frame.triangle_groups.update(frame.trace_scene, static_cast<std::uint32_t>(frame.settings.triangle_groups));
+  if (patches_->are_shared) frame.timer.mark("patches");
+}
+
 // The directions [first, first + batch) and their hits. A single batch is made and traced once for all bounces.
 Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
                                       std::uint32_t first, std::uint32_t batch) {
   if (traced_ != nullptr && traced_->first == first) return *traced_;
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
   const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
-  traced_ = &directions_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, first, std::min(batch, samples - first),
-                                  seed);
+  traced_ = &directions_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, *patches_, first,
+                                  std::min(batch, samples - first), seed);
   frame.timer.mark("directions");
-  frame.tracer.closest_hit(traced_->rays, traced_->ray_count, occlusion_.hits, &occlusion_.list);
-  frame.rays += traced_->ray_count;
-  frame.timer.mark("trace");
+  trace(frame, *traced_);
   return *traced_;
+}
+
+// The nearest hits of the patches' rays are the pixels' own where a patch is one pixel, else their candidates.
+void ThesisMethod::trace(FrameContext& frame, const Directions& directions) {
+  const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
+  frame.rays += std::uint64_t{directions.ray_count} * groups;
+  if (!patches_->are_shared) {
+    frame.tracer.closest_hit(directions.rays, directions.ray_count, occlusion_.hits, &occlusion_.list);
+    frame.timer.mark("trace");
+    return;
+  }
+  if (groups > 1)
+    frame.triangle_groups.closest_hits(directions.rays, directions.ray_count, candidates_, candidates_of_group_);
+  else
+    frame.tracer.closest_hit(directions.rays, directions.ray_count, candidates_);
+  frame.timer.mark("trace");
+  frame.tracer.test_candidates({patches_->pixel_origins, directions.directions, candidates_, active_blocks_->slots(),
+                                patches_->count, directions.count, groups, frame.settings.trace_missed},
+                               occlusion_.hits, occlusion_.list);
+  frame.timer.mark("candidates");
 }
 
 void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                  const IndirectMapGrid& grid, int bounce) {
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
-  const std::uint32_t batch = directions_per_batch(grid, frame.settings.samples);
+  const std::uint32_t batch = directions_per_batch(grid, frame.settings);
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
   for (std::uint32_t first = 0; first < samples; first += batch) {
-    Directions& directions = trace_batch(frame, g_buffer, grid, first, batch);
+    const OcclusionRays rays{trace_batch(frame, g_buffer, grid, first, batch), *patches_, active_blocks_->slots()};
     if (bounce == 1)
-      hit_light_pass_.run(frame.scene, occlusion_, shadows, literal, directions);
+      hit_light_pass_.run(frame.scene, rays, occlusion_, shadows, literal);
     else
-      hit_light_pass_.run_from_screen(g_buffer, occlusion_, previous_bounce_.image, literal, directions);
+      hit_light_pass_.run_from_screen(g_buffer, rays, occlusion_, previous_bounce_.image);
     frame.timer.mark(bounce == 1 ? "light of hits" : "light from screen");
-    gather_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, directions, occlusion_,
+    gather_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, rays, occlusion_,
                      {samples, literal, bounce == 1 && !literal}, bounce_);
     frame.timer.mark("gather");
   }

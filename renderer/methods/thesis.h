@@ -8,6 +8,7 @@
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/gather.h"
 #include "renderer/passes/hit_light.h"
+#include "renderer/passes/patches.h"
 #include "renderer/passes/shadow_maps.h"
 
 namespace lightwell {
@@ -24,14 +25,17 @@ class ThesisMethod {
   void resize(const FrameContext& frame, const IndirectMapGrid& grid);
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);
+  void find_patches(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid);
   Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
                           std::uint32_t first, std::uint32_t batch);
+  void trace(FrameContext& frame, const Directions& directions);
   void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMapGrid& grid, int bounce);
 
   GBufferPass g_buffer_pass_;
   ShadowMapsPass shadow_maps_pass_;
   ActiveBlocksPass active_blocks_pass_;
+  PatchesPass patches_pass_;
   DirectionsPass directions_pass_;
   HitLightPass hit_light_pass_;
   GatherPass gather_pass_;
@@ -39,8 +43,10 @@ class ThesisMethod {
   AddMapsPass add_maps_pass_;
   ComposePass compose_pass_;
   OcclusionMap occlusion_;
+  gl::Buffer candidates_, candidates_of_group_;  // Hit
   IndirectMap bounce_, previous_bounce_, all_bounces_;
   const ActiveBlocks* active_blocks_ = nullptr;  // of this frame
+  const Patches* patches_ = nullptr;             // of this frame
   Directions* traced_ = nullptr;                 // the batch whose hits are in occlusion_; null: none of this frame
 };
 

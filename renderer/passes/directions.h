@@ -7,17 +7,16 @@
 #include "renderer/passes/active_blocks.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/indirect_map_grid.h"
+#include "renderer/passes/patches.h"
 
 namespace lightwell {
 
-/// A batch of directions for every pixel of the indirect map, as rays from its representative's surface.
-/// Ray j * slots + slot (slots: of the active blocks) is direction first + j of the pixel in that slot
-/// (shaders/indirect_map.glsl).
+/// A batch of directions for every patch, as rays from its point. Ray j * patches + patch is direction first + j.
 struct Directions {
   gl::Buffer rays;                                   // Ray
   gl::BufferTexture ray_texels{"rays", GL_RGBA32F};  // the same, 2 texels a ray
-  gl::Buffer arriving;                               // uvec4 (shaders/arriving.glsl): unlit, until hits are
-  gl::BufferTexture arriving_texels{"arriving light", GL_RGBA32UI};
+  gl::Buffer directions;                             // vec4: direction and pdf (0: no ray)
+  gl::BufferTexture direction_texels{"directions", GL_RGBA32F};
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   std::uint32_t ray_count = 0;
@@ -29,7 +28,8 @@ class DirectionsPass {
   DirectionsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
   void resize(std::uint32_t most_rays);
   Directions& run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                  const ActiveBlocks& blocks, std::uint32_t first, std::uint32_t count, std::uint32_t seed);
+                  const ActiveBlocks& blocks, const Patches& patches, std::uint32_t first, std::uint32_t count,
+                  std::uint32_t seed);
 
  private:
   void make_sample_points(std::uint32_t first, std::uint32_t count, std::uint32_t seed);
@@ -39,10 +39,15 @@ class DirectionsPass {
   gl::Buffer points_;
   gl::BufferTexture point_texels_;
   struct Variant {
-    explicit Variant(const gl::ProgramPtr& p) : program(p), grid(p), count(p, "direction_count") {}
+    explicit Variant(const gl::ProgramPtr& p)
+        : program(p),
+          grid(p),
+          count(p, "direction_count"),
+          patch_count(p, "patch_count"),
+          first_unmatched(p, "first_unmatched") {}
     gl::ProgramPtr program;
     IndirectMapUniforms grid;
-    gl::Uniform<std::uint32_t> count;
+    gl::Uniform<std::uint32_t> count, patch_count, first_unmatched;
   };
   gl::Variants<Variant> variants_;
   Directions directions_;

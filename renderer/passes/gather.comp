@@ -1,5 +1,6 @@
 // Renders the indirect lighting map (thesis 4.2, Algorithm 2): the light of a pixel's hits, weighted by its BRDF.
-// Corrected: 1/N sum f cos L / pdf. LITERAL: the plain sum of what hit_light.comp weighted as printed, over r^2.
+// Corrected: 1/N sum f cos L / pdf, the BRDF being the pixel's and the pdf the patch's that its directions come from.
+// LITERAL: the plain sum of what hit_light.comp weighted as printed, over r^2.
 // The map holds light over directional albedo, so that textures do not pass through its low resolution.
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -10,13 +11,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/indirect_map.glsl"
-#include "shaders/arriving.glsl"
 #include "shaders/environment.glsl"
 
-#ifdef LITERAL
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit, distance first
-#endif
-layout(binding = UNIT_ARRIVING) uniform usamplerBuffer arriving;
+layout(binding = UNIT_ARRIVING) uniform samplerBuffer arriving;  // radiance of the hits
+layout(binding = UNIT_DIRECTIONS) uniform samplerBuffer directions;  // of the patches, with their pdf
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
 layout(rgba32ui, binding = 2) writeonly uniform uimage2D guide;  // what the filter compares, see indirect_filter.comp
@@ -25,16 +24,48 @@ uniform uint direction_count;  // in this batch
 uniform uint total_directions; // in all batches
 uniform int first_batch;
 uniform float environment_share;  // 1 in the bounce to which misses bring the environment, else 0
+uniform uint patch_count;
 
-#ifdef LITERAL
-vec3 light_from(int ray, uvec4 light) {
-  const float t = uintBitsToFloat(texelFetch(hit_words, 5 * ray).x);
-  return is_lit(light) ? color_of(light) / max(t * t, 1e-12) : vec3(0.0);
+#ifdef PATCHES
+layout(binding = UNIT_PIXEL_ORIGINS) uniform usamplerBuffer pixel_origins;
+uint patch_of_slot(uint slot) {
+  const uint patch_index = texelFetch(pixel_origins, int(2u * slot)).w;
+  return patch_index == kNoRank ? 0u : patch_index;  // background, which gathers nothing
 }
 #else
-vec3 light_from(int ray, uvec4 light) {
-  const vec3 environment = environment_radiance(direction_of_unlit(light)) * environment_share;
-  return color_of(light) * (is_lit(light) ? vec3(1.0) : environment);
+uint patch_of_slot(uint slot) { return slot; }
+#endif
+
+// The pixel's surface, ready to weight directions.
+struct Receiver {
+  Brdf brdf;
+  mat3 frame;
+  vec3 out_direction;
+  vec3 geometric_normal_ws;
+};
+
+Receiver receiver_at(GBufferPoint point) {
+  const mat3 frame = frame_around(point.normal_ws);
+  return Receiver(brdf_in_frame(point.brdf, frame), frame, point.to_camera_ws * frame, point.geometric_normal_ws);
+}
+
+// f cos(theta) / pdf. Light that passes the surface comes from below both normals, what is reflected from above both.
+vec3 weight_of(Receiver receiver, vec4 direction) {
+  const vec3 in_direction = direction.xyz * receiver.frame;
+  const bool agree = (dot(direction.xyz, receiver.geometric_normal_ws) < 0.0) == (in_direction.z < 0.0);
+  const vec3 value = brdf_times_cosine(receiver.brdf, receiver.out_direction, in_direction);
+  return direction.w > 0.0 && agree ? value / max(direction.w, 1e-20) : vec3(0.0);
+}
+
+// Light along a direction with a hit at `t` metres, or none where that is negative, times its weight.
+#ifdef LITERAL
+vec3 light_from(Receiver receiver, int record, vec4 direction, float t) {
+  return t >= 0.0 ? texelFetch(arriving, record).rgb / max(t * t, 1e-12) : vec3(0.0);
+}
+#else
+vec3 light_from(Receiver receiver, int record, vec4 direction, float t) {
+  const vec3 environment = environment_radiance(direction.xyz) * environment_share;
+  return weight_of(receiver, direction) * (t >= 0.0 ? texelFetch(arriving, record).rgb : environment);
 }
 #endif
 
@@ -45,14 +76,18 @@ void main() {
   const GBufferPoint point = g_buffer_point(representative_pixel(map_pixel));
   const float cos_out = max(dot(point.normal_ws, point.to_camera_ws), 0.0);
 
+  const Receiver receiver = receiver_at(point);
+  const uint patch_index = patch_of_slot(slot == kNoRank ? 0u : slot);
+
   vec3 sum = vec3(0.0);
   vec2 distance_sum = vec2(0.0);
   const uint count = slot == kNoRank ? 0u : direction_count;
   for (uint j = 0u; j < count; ++j) {
-    const int index = int(j * slot_count + slot);
-    const uvec4 light = texelFetch(arriving, index);
-    sum += light_from(index, light);
-    distance_sum += is_lit(light) ? vec2(distance_of_lit(light), 1.0) : vec2(0.0);
+    const int record = int(j * slot_count + slot);
+    const vec4 direction = texelFetch(directions, int(j * patch_count + patch_index));
+    const float t = uintBitsToFloat(texelFetch(hit_words, 5 * record).x);
+    sum += light_from(receiver, record, direction, t);
+    distance_sum += t >= 0.0 ? vec2(t, 1.0) : vec2(0.0);
   }
 #ifndef LITERAL
   sum /= float(total_directions);

@@ -20,6 +20,7 @@ GatherPass::Variant::Variant(const gl::ProgramPtr& p)
       grid(p),
       direction_count(p, "direction_count"),
       total_directions(p, "total_directions"),
+      patch_count(p, "patch_count"),
       first_batch(p, "first_batch"),
       environment_share(p, "environment_share") {}
 
@@ -32,22 +33,25 @@ void GatherPass::resize(glm::ivec2 map_size_px) {
 }
 
 void GatherPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                     const ActiveBlocks& blocks, const Directions& directions, const OcclusionMap& occlusion,
+                     const ActiveBlocks& blocks, const OcclusionRays& rays, const OcclusionMap& occlusion,
                      const Gathering& gathering, IndirectMap& map) {
   g_buffer.bind();
   blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
-  directions.arriving_texels.bind(UNIT_ARRIVING);
+  rays.directions.direction_texels.bind(UNIT_DIRECTIONS);
+  rays.patches.origin_texels.bind(UNIT_PIXEL_ORIGINS);
+  occlusion.arriving_texels.bind(UNIT_ARRIVING);
   occlusion.hit_texels.bind(UNIT_HITS);
   map.image.bind_image(0, GL_READ_WRITE);
   occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
   guide_.bind_image(2, GL_WRITE_ONLY);
-  const gl::Defines kLiteral{"LITERAL 1"};
-  Variant& variant =
-      variants_.with(gathering.literal ? kLiteral : gl::joined(scene.environment_defines(), scene.brdf_defines()));
+  const gl::Defines kind =
+      gathering.literal ? gl::Defines{"LITERAL 1"} : gl::joined(scene.environment_defines(), scene.brdf_defines());
+  Variant& variant = variants_.with(gl::joined(kind, rays.patches.defines()));
   variant.grid.set(grid, blocks.slots());
-  variant.direction_count = directions.count;
+  variant.direction_count = rays.directions.count;
+  variant.patch_count = rays.patches.count;
   variant.total_directions = gathering.total_directions;
-  variant.first_batch = directions.first == 0 ? 1 : 0;
+  variant.first_batch = rays.directions.first == 0 ? 1 : 0;
   variant.environment_share = gathering.misses_see_environment ? 1.0f : 0.0f;
   variant.program->dispatch(grid.map_size_px);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);

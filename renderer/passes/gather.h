@@ -32,7 +32,7 @@ class GatherPass {
 
   /// Adds a batch of directions to `map`; the first batch starts it anew.
   void run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
-           const Directions& directions, const OcclusionMap& occlusion, const Gathering& gathering, IndirectMap& map);
+           const OcclusionRays& rays, const OcclusionMap& occlusion, const Gathering& gathering, IndirectMap& map);
 
   /// Mean distance of a pixel's hits in the first batch, metres (R32F).
   const gl::Texture& occlusion_distance() const { return occlusion_distance_; }
@@ -44,7 +44,7 @@ class GatherPass {
     explicit Variant(const gl::ProgramPtr& p);
     gl::ProgramPtr program;
     IndirectMapUniforms grid;
-    gl::Uniform<std::uint32_t> direction_count, total_directions;
+    gl::Uniform<std::uint32_t> direction_count, total_directions, patch_count;
     gl::Uniform<int> first_batch;
     gl::Uniform<float> environment_share;
   };

@@ -1,6 +1,6 @@
 // Light leaving the hits towards their pixels: the occlusion map as indirect light sources (thesis 4.2). A hit in shadow
-// gives nothing but its own emission; misses are not here, see gather.comp. Rays and hits are read as buffer textures,
-// see shaders/scene_data.glsl.
+// gives nothing but its own emission; misses are not here, see gather.comp. Hits are read as a buffer texture, see
+// shaders/scene_data.glsl.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -17,12 +17,10 @@ layout(local_size_x = 64) in;
 #include "shaders/hit_surface.glsl"
 #include "shaders/lights.glsl"
 #include "shaders/hit_list.glsl"
-#include "shaders/arriving.glsl"
+#include "shaders/occlusion_ray.glsl"
 
-layout(binding = UNIT_RAYS) uniform samplerBuffer ray_texels;  // 2 texels a ray
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit
-layout(std430, binding = BINDING_ARRIVING) buffer Arriving { uvec4 arriving[]; };
-layout(std430, binding = BINDING_HIT_WEIGHTS) writeonly buffer HitWeights { vec4 hit_weights[]; };  // for further bounces
+layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };  // radiance
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 
@@ -53,19 +51,9 @@ vec3 light_of_hit(Ray ray, Hit hit) {
 void main() {
   if (gl_GlobalInvocationID.x >= hit_count) return;
   const uint index = hit_ray(gl_GlobalInvocationID.x);
-  const vec4 origin = texelFetch(ray_texels, int(2u * index));
-  const vec4 direction = texelFetch(ray_texels, int(2u * index + 1u));
-  const Ray ray = Ray(origin.xyz, origin.w, direction.xyz, direction.w);
   const int first = int(5u * index);
   const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, first).x), texelFetch(hit_words, first + 1).x,
                       texelFetch(hit_words, first + 2).x, uintBitsToFloat(texelFetch(hit_words, first + 3).x),
                       uintBitsToFloat(texelFetch(hit_words, first + 4).x));
-  const vec3 radiance = light_of_hit(ray, hit);
-#ifdef LITERAL
-  const vec3 weight = vec3(1.0);
-#else
-  const vec3 weight = color_of(arriving[index]);
-#endif
-  hit_weights[gl_GlobalInvocationID.x] = vec4(weight, 0.0);
-  arriving[index] = pack_lit(radiance * weight, hit.t);
+  arriving[index] = vec4(light_of_hit(occlusion_ray(index), hit), 0.0);
 }

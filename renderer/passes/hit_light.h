@@ -11,35 +11,47 @@
 
 namespace lightwell {
 
-/// The nearest hit along each ray of a batch of directions: M(p, d_j) of the thesis, as records.
+/// The nearest hit of each pixel along each of a batch of directions: M(p, d_j) of the thesis. Record j * slots + slot.
 struct OcclusionMap {
   /// `buffers`: host-visible for a native tracer.
   explicit OcclusionMap(gl::BufferUse buffers) : hits("hits", 0, buffers), list(buffers) {}
-  void resize(std::uint32_t most_rays);
+  void resize(std::uint32_t most_records);
 
   gl::Buffer hits;                                 // Hit
   gl::BufferTexture hit_texels{"hits", GL_R32UI};  // the same, 5 texels a hit
   HitList list;
-  gl::Buffer hit_weights{"hit weights",
-                         0};  // vec4, in the order of the list: what the first bounce found in `arriving`
+  gl::Buffer arriving{"arriving light", 0};  // vec4: radiance that leaves the hits towards the pixels
+  gl::BufferTexture arriving_texels{"arriving light", GL_RGBA32F};
+};
+
+/// The rays whose hits an OcclusionMap holds.
+struct OcclusionRays {
+  const Directions& directions;
+  const Patches& patches;
+  std::uint32_t slots;
 };
 
 class HitLightPass {
  public:
   explicit HitLightPass(gl::ShaderLibrary& shaders);
 
-  /// Emission and reflected direct light of the hits takes the place of the unlit rays' weights in `directions`.
-  /// `literal`: weighted as Algorithm 2 prints it.
-  void run(const DeviceScene& scene, const OcclusionMap& occlusion, const ShadowMaps& shadows, bool literal,
-           Directions& directions);
+  /// Emission and reflected direct light of the hits. `literal`: weighted as Algorithm 2 prints it.
+  void run(const DeviceScene& scene, const OcclusionRays& rays, const OcclusionMap& occlusion,
+           const ShadowMaps& shadows, bool literal);
 
   /// What the previous bounce's indirect map shows where a hit is seen by the camera, else nothing.
-  void run_from_screen(const GBuffer& g_buffer, const OcclusionMap& occlusion, const gl::Texture& previous_bounce,
-                       bool literal, Directions& directions);
+  void run_from_screen(const GBuffer& g_buffer, const OcclusionRays& rays, const OcclusionMap& occlusion,
+                       const gl::Texture& previous_bounce);
 
  private:
-  void bind(const Directions& directions, const OcclusionMap& occlusion) const;
-  gl::Variants<gl::ProgramPtr> from_lights_, from_screen_;
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p)
+        : program(p), slot_count(p, "slot_count"), patch_count(p, "patch_count") {}
+    gl::ProgramPtr program;
+    gl::Uniform<std::uint32_t> slot_count, patch_count;
+  };
+  void dispatch(Variant& variant, const OcclusionRays& rays, const OcclusionMap& occlusion) const;
+  gl::Variants<Variant> from_lights_, from_screen_;
 };
 
 }  // namespace lightwell

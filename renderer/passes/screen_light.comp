@@ -10,12 +10,10 @@ layout(local_size_x = 64) in;
 #include "shaders/g_buffer.glsl"
 #include "shaders/ray.glsl"
 #include "shaders/hit_list.glsl"
-#include "shaders/arriving.glsl"
+#include "shaders/occlusion_ray.glsl"
 
-layout(std430, binding = BINDING_RAYS) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = BINDING_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = BINDING_ARRIVING) buffer Arriving { uvec4 arriving[]; };
-layout(std430, binding = BINDING_HIT_WEIGHTS) readonly buffer HitWeights { vec4 hit_weights[]; };
+layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };  // radiance
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_bounce;  // demodulated indirect map
 
 const float kDepthTolerance = 0.02;  // relative; a seen surface's own slope within a pixel stays below it
@@ -36,10 +34,6 @@ vec3 screen_radiance(vec3 position_ws) {
 void main() {
   if (gl_GlobalInvocationID.x >= hit_count) return;
   const uint index = hit_ray(gl_GlobalInvocationID.x);
-  const Hit hit = hits[index];
-  const vec3 radiance = screen_radiance(rays[index].origin_ws + hit.t * rays[index].direction_ws);
-  // Directions made anew for this bounce have their weights still; else hit_light.comp has put them by.
-  const uvec4 before = arriving[index];
-  const vec3 weight = is_lit(before) ? hit_weights[gl_GlobalInvocationID.x].rgb : color_of(before);
-  arriving[index] = pack_lit(radiance * weight, hit.t);
+  const Ray ray = occlusion_ray(index);
+  arriving[index] = vec4(screen_radiance(ray.origin_ws + hits[index].t * ray.direction_ws), 0.0);
 }

@@ -9,6 +9,10 @@
 #define TRACE_BINDING_ALPHA 7
 #define TRACE_BINDING_HIT_LIST 9
 #define TRACE_BINDING_HIT_DISPATCH 10
+#define TRACE_BINDING_PLACES 11
+#define TRACE_BINDING_INSTANCES 12
+#define TRACE_BINDING_PIXELS 13
+#define TRACE_BINDING_DIRECTIONS 14
 
 #define TRACE_GROUP_SIZE 64
 // Levels of inner nodes, each of which may leave one entry on the traversal stack.

@@ -1,4 +1,6 @@
 // The tracer that never leaves the device: trace.comp over hierarchies built on the CPU.
+#include <optional>
+
 #include "renderer/check.h"
 #include "renderer/gl/program.h"
 #include "renderer/tracing/bindings.glsl"
@@ -7,6 +9,19 @@
 
 namespace lightwell {
 namespace {
+
+// Empties the list.
+void bind_list(HitList& list) {
+  constexpr std::uint32_t kNone[4] = {0, 1, 1, 0};
+  list.dispatch.upload(std::span<const std::uint32_t>(kNone));
+  list.rays.bind_storage(TRACE_BINDING_HIT_LIST);
+  list.dispatch.bind_storage(TRACE_BINDING_HIT_DISPATCH);
+}
+
+void finish_writing() {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT |
+                  GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
 
 // One build of trace.comp.
 class TraceProgram {
@@ -22,26 +37,58 @@ class TraceProgram {
            HitList* list = nullptr) const {
     hierarchies.bind();
     lists_hits_ = list ? 1 : 0;
-    if (list) {
-      constexpr std::uint32_t kNone[4] = {0, 1, 1, 0};
-      list->dispatch.upload(std::span<const std::uint32_t>(kNone));
-      list->rays.bind_storage(TRACE_BINDING_HIT_LIST);
-      list->dispatch.bind_storage(TRACE_BINDING_HIT_DISPATCH);
-    }
+    if (list) bind_list(*list);
     rays.bind_storage(TRACE_BINDING_RAYS);
     results.bind_storage(TRACE_BINDING_RESULTS);
     ray_count_ = count;
     top_root_ = hierarchies.top_root();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program_->dispatch(count, TRACE_GROUP_SIZE);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT |
-                    GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    finish_writing();
   }
 
  private:
   gl::ProgramPtr program_;
   gl::Uniform<int> lists_hits_;
   gl::Uniform<std::uint32_t> ray_count_, top_root_;
+};
+
+// One build of candidates.comp.
+class CandidateProgram {
+ public:
+  CandidateProgram(gl::ShaderLibrary& shaders, bool coverage)
+      : program_(shaders.compute("tracing/candidates.comp", {"ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0"})),
+        pixel_count_(program_, "pixel_count"),
+        patch_count_(program_, "patch_count"),
+        direction_count_(program_, "direction_count"),
+        group_count_(program_, "group_count"),
+        top_root_(program_, "top_root"),
+        trace_missed_(program_, "trace_missed") {}
+
+  void run(const CandidateTest& test, const gl::Buffer& hits, const DeviceHierarchies& hierarchies,
+           HitList& list) const {
+    hierarchies.bind();
+    hierarchies.bind_places();
+    bind_list(list);
+    test.candidates.bind_storage(TRACE_BINDING_RAYS);
+    hits.bind_storage(TRACE_BINDING_RESULTS);
+    test.pixels.bind_storage(TRACE_BINDING_PIXELS);
+    test.directions.bind_storage(TRACE_BINDING_DIRECTIONS);
+    pixel_count_ = test.pixel_count;
+    patch_count_ = test.patch_count;
+    direction_count_ = test.direction_count;
+    group_count_ = test.group_count;
+    top_root_ = hierarchies.top_root();
+    trace_missed_ = test.trace_missed ? 1 : 0;
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    program_->dispatch(test.pixel_count * test.direction_count, TRACE_GROUP_SIZE);
+    finish_writing();
+  }
+
+ private:
+  gl::ProgramPtr program_;
+  gl::Uniform<std::uint32_t> pixel_count_, patch_count_, direction_count_, group_count_, top_root_;
+  gl::Uniform<int> trace_missed_;
 };
 
 class ComputeTracer final : public Tracer {
@@ -62,12 +109,20 @@ class ComputeTracer final : public Tracer {
     (hierarchies_.needs_coverage() ? covered_any_hit_ : any_hit_).run(rays, count, visible, hierarchies_);
   }
 
+  void test_candidates(const CandidateTest& test, gl::Buffer& hits, HitList& list) override {
+    LIGHTWELL_CHECK_OP(std::uint64_t{test.pixel_count} * test.direction_count * sizeof(Hit), <=, hits.size_bytes());
+    std::optional<CandidateProgram>& program = hierarchies_.needs_coverage() ? covered_candidates_ : candidates_;
+    if (!program) program.emplace(shaders_, hierarchies_.needs_coverage());
+    program->run(test, hits, hierarchies_, list);
+  }
+
   std::uint64_t memory_bytes() const override { return hierarchies_.memory_bytes(); }
 
  private:
   gl::ShaderLibrary shaders_;
   TraceProgram closest_hit_{shaders_, false, false}, covered_closest_hit_{shaders_, false, true};
   TraceProgram any_hit_{shaders_, true, false}, covered_any_hit_{shaders_, true, true};
+  std::optional<CandidateProgram> candidates_, covered_candidates_;  // made when patches are first used
   DeviceHierarchies hierarchies_;
 };
 

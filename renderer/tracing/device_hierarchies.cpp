@@ -87,10 +87,12 @@ void upload_if_changed(gl::Buffer& buffer, std::vector<T>& uploaded, std::vector
 DeviceHierarchies::DeviceHierarchies()
     : nodes_("hierarchy nodes", sizeof(BvhNode)),
       triangles_("hierarchy triangles", sizeof(DeviceTriangle)),
+      places_("triangle places", sizeof(std::uint32_t)),
       corner_uvs_("texture coordinates for coverage", sizeof(glm::vec2)),
       alpha_("alpha planes for coverage", sizeof(std::uint32_t)),
       group_buffer_("geometry groups", 0),
-      coverage_buffer_("coverage tests", 0) {}
+      coverage_buffer_("coverage tests", 0),
+      instance_buffer_("instances of hierarchies", 0) {}
 
 void DeviceHierarchies::update(const TraceScene& scene) {
   LIGHTWELL_CHECK_OP(scene.instances.size(), ==, scene.coverage.size());
@@ -101,7 +103,7 @@ void DeviceHierarchies::update(const TraceScene& scene) {
   std::vector<const BottomLevel*> levels;
   levels.reserve(groups.size());
   for (const GeometryGroup& group : groups) levels.push_back(&bottom_level(group, scene.instances));
-  build_top_level(groups, levels);
+  build_top_level(groups, levels, scene.instances.size());
   drop_unused();
 }
 
@@ -114,9 +116,15 @@ void DeviceHierarchies::bind() const {
   alpha_.bind_storage(TRACE_BINDING_ALPHA);
 }
 
+void DeviceHierarchies::bind_places() const {
+  places_.bind_storage(TRACE_BINDING_PLACES);
+  instance_buffer_.bind_storage(TRACE_BINDING_INSTANCES);
+}
+
 std::uint64_t DeviceHierarchies::memory_bytes() const {
-  return nodes_.size_bytes() + triangles_.size_bytes() + corner_uvs_.size_bytes() + alpha_.size_bytes() +
-         group_buffer_.size_bytes() + coverage_buffer_.size_bytes();
+  return nodes_.size_bytes() + triangles_.size_bytes() + places_.size_bytes() + corner_uvs_.size_bytes() +
+         alpha_.size_bytes() + group_buffer_.size_bytes() + coverage_buffer_.size_bytes() +
+         instance_buffer_.size_bytes();
 }
 
 const DeviceHierarchies::BottomLevel& DeviceHierarchies::bottom_level(const GeometryGroup& group,
@@ -141,6 +149,7 @@ void DeviceHierarchies::build(BottomLevel& level, const GeometryGroup& group, st
   Bvh bvh = build_bvh(boxes, kBottomLimits, &threads_);
   level.nodes = nodes_.allocate(static_cast<std::uint32_t>(bvh.nodes.size()));
   level.triangles = triangles_.allocate(static_cast<std::uint32_t>(boxes.size()));
+  level.places = places_.allocate(static_cast<std::uint32_t>(boxes.size()));
   upload(level, bvh, group);
   level.root = moved(bvh.root, level.nodes.first(), level.triangles.first());
   level.bounds = bvh.bounds;
@@ -172,12 +181,34 @@ void DeviceHierarchies::upload(const BottomLevel& level, const Bvh& bvh, const G
   const std::vector<DeviceTriangle> triangles = triangles_of(group);
   std::vector<DeviceTriangle> ordered;
   ordered.reserve(triangles.size());
-  for (const std::uint32_t item : bvh.items) ordered.push_back(triangles[item]);
+  std::vector<std::uint32_t> places(triangles.size());
+  for (const std::uint32_t item : bvh.items) {
+    places[item] = level.triangles.first() + static_cast<std::uint32_t>(ordered.size());
+    ordered.push_back(triangles[item]);
+  }
   triangles_.upload(level.triangles, std::span<const DeviceTriangle>(ordered));
+  places_.upload(level.places, std::span<const std::uint32_t>(places));
+}
+
+// `order[i]` is the group that stands at place i in the group buffer.
+std::vector<DeviceInstance> DeviceHierarchies::find_instances(const std::vector<GeometryGroup>& groups,
+                                                              const std::vector<const BottomLevel*>& levels,
+                                                              const std::vector<std::uint32_t>& order,
+                                                              std::size_t count) const {
+  std::vector<DeviceInstance> found(count, DeviceInstance{0, 0});
+  for (std::uint32_t place = 0; place < order.size(); ++place) {
+    const GeometryGroup& group = groups[order[place]];
+    std::uint32_t first = levels[order[place]]->places.first();
+    for (std::size_t i = 0; i < group.key.primitives.size(); ++i) {
+      found[group.first_instance + i] = {place, first};
+      first += static_cast<std::uint32_t>(group.key.primitives[i]->indices.size() / 3);
+    }
+  }
+  return found;
 }
 
 void DeviceHierarchies::build_top_level(const std::vector<GeometryGroup>& groups,
-                                        const std::vector<const BottomLevel*>& levels) {
+                                        const std::vector<const BottomLevel*>& levels, std::size_t instance_count) {
   if (groups.empty()) {
     top_root_ = kNothing;
     return;
@@ -209,6 +240,7 @@ void DeviceHierarchies::build_top_level(const std::vector<GeometryGroup>& groups
                        groups[item].key.filtered ? 1u : 0u});
   }
   upload_if_changed(group_buffer_, groups_, std::move(records));
+  upload_if_changed(instance_buffer_, instances_, find_instances(groups, levels, top.items, instance_count));
 }
 
 void DeviceHierarchies::update_coverage(const TraceScene& scene, std::vector<bool>& filtered) {

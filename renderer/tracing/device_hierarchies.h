@@ -34,6 +34,13 @@ struct DeviceCoverage {
 };
 static_assert(sizeof(DeviceCoverage) == 64);
 
+/// std430, 8 bytes; `instances` in candidates.comp. How to find an instance's triangles by their number.
+struct DeviceInstance {
+  std::uint32_t group;        // in the group buffer
+  std::uint32_t first_place;  // of its first triangle
+};
+static_assert(sizeof(DeviceInstance) == 8);
+
 class DeviceHierarchies {
  public:
   DeviceHierarchies();
@@ -43,6 +50,9 @@ class DeviceHierarchies {
 
   /// Binds everything but rays and results.
   void bind() const;
+
+  /// Binds as well what finds triangles by instance and number.
+  void bind_places() const;
 
   /// A BvhChild, or kNothing if there is no triangle.
   std::uint32_t top_root() const { return top_root_; }
@@ -55,7 +65,7 @@ class DeviceHierarchies {
   struct BottomLevel {
     std::vector<std::shared_ptr<const Primitive>> primitives;  // keep the key's addresses alive
     std::shared_ptr<const DeformedVertices> shape;
-    PoolRange nodes, triangles;
+    PoolRange nodes, triangles, places;
     std::uint32_t root = 0;  // in the node buffer
     Box bounds;              // in the group's space
     Bvh bvh;                 // kept for refitting; empty if rigid
@@ -76,8 +86,12 @@ class DeviceHierarchies {
   const BottomLevel& bottom_level(const GeometryGroup& group, std::span<const Instance> instances);
   void build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances);
   void refit(BottomLevel& level, const GeometryGroup& group);
+  std::vector<DeviceInstance> find_instances(const std::vector<GeometryGroup>& groups,
+                                             const std::vector<const BottomLevel*>& levels,
+                                             const std::vector<std::uint32_t>& order, std::size_t count) const;
   void upload(const BottomLevel& level, const Bvh& bvh, const GeometryGroup& group);
-  void build_top_level(const std::vector<GeometryGroup>& groups, const std::vector<const BottomLevel*>& levels);
+  void build_top_level(const std::vector<GeometryGroup>& groups, const std::vector<const BottomLevel*>& levels,
+                       std::size_t instance_count);
   void update_coverage(const TraceScene& scene, std::vector<bool>& filtered);
   DeviceCoverage device_coverage(const CoverageTest& test, const TraceScene& scene, std::size_t instance);
   std::uint32_t first_corner(const std::shared_ptr<const Primitive>& primitive, int uv_set);
@@ -85,15 +99,16 @@ class DeviceHierarchies {
   void drop_unused();
 
   ThreadPool threads_;
-  DevicePool nodes_, triangles_, corner_uvs_, alpha_;
+  DevicePool nodes_, triangles_, places_, corner_uvs_, alpha_;
   std::map<GeometryKey, std::unique_ptr<BottomLevel>> bottom_levels_;
   std::map<std::pair<const Primitive*, int>, CornerUvs> corners_;  // by uv set as well
   std::unordered_map<const Image*, AlphaPlane> planes_;
   AlphaRanges alpha_ranges_;
 
-  gl::Buffer group_buffer_, coverage_buffer_;
+  gl::Buffer group_buffer_, coverage_buffer_, instance_buffer_;
   std::vector<DeviceGroup> groups_;  // as they stand in the buffer
   std::vector<DeviceCoverage> coverage_;
+  std::vector<DeviceInstance> instances_;
   std::vector<BvhNode> top_nodes_;
   PoolRange top_range_;
   std::uint32_t top_root_ = kNothing;

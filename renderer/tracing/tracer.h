@@ -51,6 +51,28 @@ struct HitList {
       dispatch;  // uint32 x 4: groups of kHitGroup in x, 1, 1 (an indirect dispatch's arguments); the count of hits
 };
 
+/// Where the rays of a pixel start, and which patch gives it directions and candidates; std430 layout, 32 bytes.
+struct PixelOrigin {
+  glm::vec3 above_ws;         // origin of rays to the surface's outer side
+  std::uint32_t patch_index;  // kNoPatch: it has no rays
+  glm::vec3 down_ws;          // from there to the origin of rays to the inner side: those with a positive cosine to it
+  std::uint32_t padding;
+};
+static_assert(sizeof(PixelOrigin) == 32);
+constexpr std::uint32_t kNoPatch = ~0u;
+
+/// Scaling up (thesis 5.2): what patches hit is tried again for each of their pixels, with its own origin. Buffers are
+/// of the kind that the tracer reads.
+struct CandidateTest {
+  const gl::Buffer& pixels;      // PixelOrigin
+  const gl::Buffer& directions;  // vec4 (unit in xyz): direction * patches + patch
+  const gl::Buffer&
+      candidates;  // Hit: (group * directions + direction) * patches + patch; triangles as the group counts
+  std::uint32_t pixel_count, patch_count, direction_count;
+  std::uint32_t group_count;  // triangle t of group g is triangle t * group_count + g of its primitive
+  bool trace_missed;          // a pixel for which no candidate remains of those its patch had traces the ray itself
+};
+
 /// Which triangles count: alpha from the base-colour texture, tested alike by both tracers.
 /// Texel is nearest, wrap as the sampler says; alpha = texel.a * factor (vertex colours are not looked at).
 /// kMask hits where alpha >= cutoff. kBlend hits where alpha > coverage_threshold(instance, triangle, u, v).
@@ -88,6 +110,10 @@ class Tracer {
 
   /// For rays[0, count): bit (i % 32) of word (i / 32) of `visible` is 1 where nothing lies between t_min and t_max.
   virtual void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) = 0;
+
+  /// For each pixel and direction the nearest of its patch's candidates that its own ray meets: hits[direction *
+  /// pixels + pixel], t = kMiss where there is none. `list` is filled with them, as by closest_hit.
+  virtual void test_candidates(const CandidateTest& test, gl::Buffer& hits, HitList& list) = 0;
 
   /// Bytes held for hierarchies, on whichever side they live.
   virtual std::uint64_t memory_bytes() const = 0;

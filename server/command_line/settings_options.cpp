@@ -1,5 +1,8 @@
 #include "server/command_line/settings_options.h"
 
+#include <fmt/format.h>
+
+#include <bit>
 #include <limits>
 
 #include "server/command_line/add_option.h"
@@ -12,6 +15,25 @@ Result<int> parse_shadow_filter(const std::string& text) {
   const Result<long long> width = parse_integer(text, 1, 15);
   if (!width || *width % 2 == 0) return invalid_input("", "expected an odd integer from 1 to 15, not \"" + text + "\"");
   return static_cast<int>(*width);
+}
+
+Result<int> parse_patch(const std::string& text) {
+  const Result<long long> side = parse_integer(text, 1, 16);
+  if (!side || !std::has_single_bit(static_cast<unsigned long long>(*side)))
+    return invalid_input("", "expected 1, 2, 4, 8 or 16, not \"" + text + "\"");
+  return static_cast<int>(*side);
+}
+
+Result<float> parse_float(const std::string& text, double least, double most) {
+  const Result<double> number = parse_number(text, least, most);
+  if (!number) return number.error();
+  return static_cast<float>(*number);
+}
+Result<float> parse_cosine(const std::string& text) {
+  return parse_float(text, -1.0, 1.0);
+}
+Result<float> parse_depth_threshold(const std::string& text) {
+  return parse_float(text, 0.0, 10.0);
 }
 
 Result<int> parse_bounces(const std::string& text) {
@@ -72,6 +94,21 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
              std::to_string(settings.bounces));
   add_named(app, "--estimator", settings.estimator, {Estimator::kCorrected, Estimator::kLiteral}, estimator_from_name,
             "The thesis' sum over directions: unbiased, or to the letter");
+  add_parsed(app, "--patch", settings.patch, parse_patch, "N",
+             "Side of the patches of pixels that share directions and candidates: 1, 2, 4, 8 or 16",
+             std::to_string(settings.patch));
+  add_integer(app, "--triangle-groups", settings.triangle_groups, 1, 64,
+              "Groups of triangles, the nearest of each of which is a patch's candidate");
+  add_parsed(app, "--normal-threshold", settings.normal_threshold, parse_cosine, "COSINE",
+             "Pixels are similar where the cosine between their normals is greater",
+             fmt::format("{}", settings.normal_threshold));
+  add_parsed(app, "--depth-threshold", settings.depth_threshold, parse_depth_threshold, "SHARE",
+             "Pixels are similar where their depths differ by less, as a share of the greater",
+             fmt::format("{}", settings.depth_threshold));
+  add_named(app, "--similarity", settings.similarity, {Similarity::kCorrected, Similarity::kLiteral},
+            similarity_from_name, "Depths that differ by less are similar, or, as the thesis prints it, by more");
+  app.add_flag("--trace-missed,!--no-trace-missed", settings.trace_missed,
+               "Trace a ray anew that none of its patch's candidates lies before");
   add_integer(app, "--shadow-size", settings.shadow_size, 64, 4096, "A shadow map's side in pixels");
   add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
              "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));

@@ -93,6 +93,10 @@ void EmbreeScene::update(const TraceScene& scene) {
   ++frame_;
   std::vector<bool> filtered;
   prepare_coverage_tests(scene, filtered);
+  placed_.clear();
+  for (const Instance& instance : scene.instances)
+    placed_.push_back({positions_of(*instance.primitive, instance.deformed.get()).data(),
+                       instance.primitive->indices.data(), instance.world_from_object});
   const std::vector<GeometryGroup> groups = group_instances(scene.instances, filtered);
   std::vector<const BottomLevel*> levels;
   levels.reserve(groups.size());

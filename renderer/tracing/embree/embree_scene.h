@@ -1,6 +1,7 @@
 // The hierarchies of the Embree tracer: one per geometry group, kept over the frames, and the top level over them.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <map>
@@ -34,6 +35,21 @@ class EmbreeScene {
     return lightwell::is_covered(coverage_[instance], *primitives_[instance], instance, triangle, u, v);
   }
 
+  /// Whether some points of its triangles do not count.
+  bool needs_coverage(std::uint32_t instance) const {
+    return coverage_[instance].outcome != CoverageTest::Outcome::kAlwaysHit;
+  }
+
+  /// The corners of a triangle in the world.
+  std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const {
+    const Placed& placed = placed_[instance];
+    const std::uint32_t* corner = placed.indices + std::size_t{3} * triangle;
+    const auto in_world = [&](std::uint32_t vertex) {
+      return glm::vec3(placed.world_from_object * glm::vec4(placed.positions[vertex], 1.0f));
+    };
+    return {in_world(corner[0]), in_world(corner[1]), in_world(corner[2])};
+  }
+
   /// Of the bounds of everything.
   float diagonal_m() const { return diagonal_m_; }
 
@@ -54,6 +70,12 @@ class EmbreeScene {
     const BottomLevel* shows = nullptr;
     std::uint64_t shown_build = 0;
     glm::mat4 world_from_object{0.0f};
+  };
+
+  struct Placed {  // where an instance's triangles are; valid as long as the frame's Pose
+    const glm::vec3* positions;
+    const std::uint32_t* indices;
+    glm::mat4 world_from_object;
   };
 
   void prepare_coverage_tests(const TraceScene& scene, std::vector<bool>& filtered);
@@ -77,6 +99,7 @@ class EmbreeScene {
   std::vector<std::uint32_t> first_instances_;  // by slot
   std::vector<CoverageTest> coverage_;          // by instance, as are the following
   std::vector<const Primitive*> primitives_;
+  std::vector<Placed> placed_;
   std::vector<std::shared_ptr<const Image>> images_;  // keep CoverageTest::image alive
 };
 

@@ -1,0 +1,36 @@
+// Pixels that refer to no patch become patches of their own, numbered after the others; and each pixel learns where its rays
+// start.
+layout(local_size_x = 64) in;
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/g_buffer.glsl"
+#include "shaders/indirect_map.glsl"
+#include "shaders/patches.glsl"
+
+layout(std430, binding = BINDING_REFERENCES) readonly buffer References { uint references[]; };
+layout(std430, binding = BINDING_OUTPUT) readonly buffer FirstOfBlock { uint first_of_block[]; };  // their patches
+layout(std430, binding = BINDING_PATCH_POINTS) writeonly buffer PatchPoints { uvec4 patch_points[]; };
+layout(std430, binding = BINDING_PIXEL_ORIGINS) writeonly buffer PixelOrigins { uvec4 pixel_origins[]; };
+
+void main() {
+  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  if (slot >= slot_count) return;
+  const ivec2 map_pixel = pixel_of_slot(slot);
+  const GBufferPoint point = g_buffer_point(representative_pixel(min(map_pixel, indirect_size_px - 1)));
+  const uint reference = references[slot];
+  const bool is_unmatched = reference != kNoPatch && (reference & kUnmatchedBit) != 0u;
+  const uint own = first_of_block[slot / kBlockSlots] + (reference & ~kUnmatchedBit);
+  const vec3 lift_ws = point.geometric_normal_ws * ray_offset_m(point);
+  const uint patch_index = is_unmatched ? own : reference;
+  pixel_origins[2u * slot] = uvec4(floatBitsToUint(point.position_ws + lift_ws), patch_index);
+  pixel_origins[2u * slot + 1u] = uvec4(floatBitsToUint(-2.0 * lift_ws), 0u);
+  if (!is_unmatched) return;
+  const PatchPoint alone =
+      PatchPoint(true, map_pixel, point.position_ws, point.normal_ws, point.view_depth_m, point.material);
+  patch_points[2u * own] = packed_position(alone);
+  patch_points[2u * own + 1u] = packed_surface(alone);
+}

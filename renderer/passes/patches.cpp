@@ -1,0 +1,89 @@
+#include "renderer/passes/patches.h"
+
+#include <cstring>
+#include <vector>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+namespace {
+
+constexpr std::uint32_t kBlockSlots = 256;
+
+}  // namespace
+
+PatchesPass::PatchesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
+    : scale_down_(
+          [&shaders](const gl::Defines& defines) { return shaders.compute("passes/scale_down.comp", defines); }),
+      reference_map_(
+          [&shaders](const gl::Defines& defines) { return shaders.compute("passes/reference_map.comp", defines); }),
+      number_unmatched_(
+          [&shaders](const gl::Defines& defines) { return shaders.compute("passes/number_unmatched.comp", defines); }),
+      unmatched_("unmatched pixels", 0, gl::BufferUse::kHostVisible),
+      first_of_block_("first unmatched of blocks", 0) {
+  patches_.pixel_origins = gl::Buffer("pixel origins", 0, buffers);
+}
+
+void PatchesPass::resize(const IndirectMapGrid& grid) {
+  const std::uint64_t slots = grid.most_slots();
+  const std::uint64_t side = static_cast<std::uint64_t>(grid.patch_side);
+  const std::uint64_t most_patches = slots / (side * side) + slots;
+  unmatched_.reserve(slots / kBlockSlots * sizeof(std::uint32_t));
+  first_of_block_.reserve(slots / kBlockSlots * sizeof(std::uint32_t));
+  patches_.points.reserve(most_patches * 2 * sizeof(glm::uvec4));
+  patches_.point_texels.attach(patches_.points);
+  patches_.references.reserve(slots * sizeof(std::uint32_t));
+  patches_.reference_texels.attach(patches_.references);
+  patches_.pixel_origins.reserve(slots * 2 * sizeof(glm::uvec4));
+  patches_.origin_texels.attach(patches_.pixel_origins);
+}
+
+void PatchesPass::dispatch(Variant& variant, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+                           const Settings& settings, std::uint32_t invocations, std::uint32_t group) {
+  variant.grid.set(grid, blocks.slots());
+  variant.normal_threshold = settings.normal_threshold;
+  variant.depth_threshold = settings.depth_threshold;
+  variant.program->dispatch(invocations, group);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+}
+
+// Numbers the blocks' unmatched pixels one after the other, after the patches of the map; gives the number after the
+// last.
+std::uint32_t PatchesPass::number_unmatched(std::uint32_t blocks) {
+  gl::wait_for_device();
+  std::vector<std::uint32_t> first(blocks);
+  std::uint32_t next = patches_.first_unmatched;
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, unmatched_.host() + block * sizeof count, sizeof count);
+    first[block] = next;
+    next += count;
+  }
+  first_of_block_.upload(std::span<const std::uint32_t>(first));
+  return next;
+}
+
+const Patches& PatchesPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+                                const Settings& settings) {
+  const auto pixels_of_patch = static_cast<std::uint32_t>(grid.patch_side * grid.patch_side);
+  patches_.are_shared = grid.patch_side > 1 || settings.triangle_groups > 1;
+  patches_.count = patches_.first_unmatched = blocks.slots() / pixels_of_patch;
+  if (!patches_.are_shared || blocks.count == 0) return patches_;
+  g_buffer.bind();
+  blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
+  patches_.points.bind_storage(BINDING_PATCH_POINTS);
+  patches_.references.bind_storage(BINDING_REFERENCES);
+  patches_.pixel_origins.bind_storage(BINDING_PIXEL_ORIGINS);
+  unmatched_.bind_storage(BINDING_OUTPUT);
+  const gl::Defines similarity =
+      settings.similarity == Similarity::kLiteral ? gl::Defines{"LITERAL_SIMILARITY 1"} : gl::Defines{};
+  dispatch(scale_down_.with(similarity), grid, blocks, settings, patches_.count, 64);
+  dispatch(reference_map_.with(similarity), grid, blocks, settings, blocks.slots(), kBlockSlots);
+  patches_.count = number_unmatched(blocks.count);
+  first_of_block_.bind_storage(BINDING_OUTPUT);
+  dispatch(number_unmatched_.with({}), grid, blocks, settings, blocks.slots(), 64);
+  return patches_;
+}
+
+}  // namespace lightwell

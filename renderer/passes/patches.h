@@ -1,0 +1,56 @@
+// Patches of similar pixels (thesis 5.1) and the reference map (5.2).
+#pragma once
+
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/variants.h"
+#include "renderer/passes/active_blocks.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/indirect_map_grid.h"
+#include "renderer/renderer.h"
+
+namespace lightwell {
+
+/// What the pixels of the indirect map trace their rays by. With patches of one pixel and triangles in one group, every
+/// pixel's slot is a patch and the buffers are not filled.
+struct Patches {
+  bool are_shared = false;               // patches have candidates, not hits
+  std::uint32_t count = 0;               // of patches: those of the map, then pixels that are similar to none of them
+  std::uint32_t first_unmatched = 0;     // such a pixel is a patch of its own, from this number on
+  gl::Buffer points{"patch points", 0};  // 2 uvec4 a patch: shaders/patches.glsl
+  gl::Buffer references{"reference map", 0};  // uint32 a slot: its patch, or none, or a mark that it is unmatched
+  gl::Buffer pixel_origins;                   // 2 vec4 a slot: see PixelOrigin in renderer/tracing/tracer.h
+  gl::BufferTexture point_texels{"patch points", GL_RGBA32UI};
+  gl::BufferTexture reference_texels{"reference map", GL_R32UI};
+  gl::BufferTexture origin_texels{"pixel origins", GL_RGBA32UI};
+  /// Programs over patches or their pixels are made with these.
+  gl::Defines defines() const { return are_shared ? gl::Defines{"PATCHES 1"} : gl::Defines{}; }
+};
+
+class PatchesPass {
+ public:
+  /// `buffers`: host-visible where a native tracer reads the pixels' origins.
+  PatchesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
+  void resize(const IndirectMapGrid& grid);
+  /// Waits for the device where patches are shared: how many pixels are unmatched decides how many rays are made.
+  const Patches& run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+                     const Settings& settings);
+
+ private:
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p)
+        : program(p), grid(p), normal_threshold(p, "normal_threshold"), depth_threshold(p, "depth_threshold") {}
+    gl::ProgramPtr program;
+    IndirectMapUniforms grid;
+    gl::Uniform<float> normal_threshold, depth_threshold;
+  };
+  void dispatch(Variant& variant, const IndirectMapGrid& grid, const ActiveBlocks& blocks, const Settings& settings,
+                std::uint32_t invocations, std::uint32_t group);
+  std::uint32_t number_unmatched(std::uint32_t blocks);
+
+  gl::Variants<Variant> scale_down_, reference_map_, number_unmatched_;
+  gl::Buffer unmatched_, first_of_block_;
+  Patches patches_;
+};
+
+}  // namespace lightwell

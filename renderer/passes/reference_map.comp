@@ -1,0 +1,71 @@
+// The reference map (thesis 5.2): each pixel of the indirect map refers to its own patch where it is similar to it, else to
+// the nearest of the eight patches around that it is similar to, else to none: it will trace rays of its own.
+layout(local_size_x = 256) in;  // a block of the map
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/indirect_map.glsl"
+#include "shaders/patches.glsl"
+#include "shaders/similarity.glsl"
+
+layout(std430, binding = BINDING_PATCH_POINTS) readonly buffer PatchPoints { uvec4 patch_points[]; };
+layout(std430, binding = BINDING_REFERENCES) writeonly buffer References { uint references[]; };  // one a slot
+layout(std430, binding = BINDING_OUTPUT) writeonly buffer Unmatched { uint unmatched[]; };        // how many, one a block
+
+shared uint unmatched_bits[8];
+
+PatchPoint fetch_patch(uint index) { return unpack_patch_point(patch_points[2u * index], patch_points[2u * index + 1u]); }
+
+// The similar one among the neighbours of the pixel's patch whose seed is nearest; kNoPatch if there is none.
+uint similar_neighbour(PatchPoint point, ivec2 map_pixel) {
+  const ivec2 own = map_pixel >> log2_patch_side;
+  uint nearest = kNoPatch;
+  int least = 1 << 30;
+  for (int i = 0; i < 9; ++i) {
+    const ivec2 corner = own + ivec2(i % 3, i / 3) - 1 << log2_patch_side;
+    const bool inside = all(greaterThanEqual(corner, ivec2(0))) && all(lessThan(corner, indirect_size_px));
+    const uint slot = slot_of_pixel(inside ? corner : ivec2(0));
+    if (!inside || slot == kNoRank) continue;
+    const uint index = slot >> 2 * log2_patch_side;
+    const PatchPoint neighbour = fetch_patch(index);
+    const ivec2 way = neighbour.seed - map_pixel;
+    const int distance2 = way.x * way.x + way.y * way.y;
+    if (distance2 < least && is_similar(point, neighbour)) {
+      least = distance2;
+      nearest = index;
+    }
+  }
+  return nearest;
+}
+
+void main() {
+  const uint block = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  const uint lane = gl_LocalInvocationIndex;
+  const uint slot = block * kBlockSlots + lane;
+  if (lane < 8u) unmatched_bits[lane] = 0u;
+  barrier();
+
+  const bool exists = slot < slot_count;
+  const ivec2 map_pixel = exists ? pixel_of_slot(slot) : ivec2(-1);
+  const PatchPoint point = point_of_pixel(map_pixel);
+  uint reference = slot >> 2 * log2_patch_side;
+  if (!exists || !point.valid)
+    reference = kNoPatch;
+  else if (!is_similar(point, fetch_patch(reference)))
+    reference = similar_neighbour(point, map_pixel);
+  const bool is_unmatched = point.valid && reference == kNoPatch;
+  if (is_unmatched) atomicOr(unmatched_bits[lane / 32u], 1u << (lane % 32u));
+  barrier();
+
+  // Its number among those of its block; made one of the whole map in number_unmatched.comp.
+  uint before = 0u, all = 0u;
+  for (uint word = 0u; word < 8u; ++word) {
+    const uint bits = unmatched_bits[word];
+    const uint below = word < lane / 32u ? ~0u : word == lane / 32u ? (1u << (lane % 32u)) - 1u : 0u;
+    before += bitCount(bits & below);
+    all += bitCount(bits);
+  }
+  if (exists) references[slot] = is_unmatched ? kUnmatchedBit | before : reference;
+  if (exists && lane == 0u) unmatched[block] = all;
+}

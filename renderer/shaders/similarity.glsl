@@ -1,0 +1,30 @@
+// isSimilar of the thesis (5.1) over the pixels of the indirect map. Needs bindings, packing, camera, indirect_map, patches.
+layout(binding = UNIT_G_SURFACE) uniform usampler2D g_surface;
+layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;
+layout(binding = UNIT_G_DEPTH) uniform sampler2D g_depth;
+
+uniform float normal_threshold;  // least cosine between the normals
+uniform float depth_threshold;   // greatest difference of the depths in camera space, relative to the greater
+
+bool is_similar(PatchPoint a, PatchPoint b) {
+  const float difference = abs(a.view_depth_m - b.view_depth_m);
+  const float limit = depth_threshold * max(a.view_depth_m, b.view_depth_m);
+#ifdef LITERAL_SIMILARITY
+  const bool depths_agree = difference > limit;  // as printed
+#else
+  const bool depths_agree = difference < limit;
+#endif
+  return a.valid && b.valid && a.material == b.material && depths_agree &&
+         dot(a.normal_ws, b.normal_ws) > normal_threshold;
+}
+
+// A pixel of the map as a patch of its own; not valid outside the map and where nothing is seen.
+PatchPoint point_of_pixel(ivec2 map_pixel) {
+  const bool inside = all(greaterThanEqual(map_pixel, ivec2(0))) && all(lessThan(map_pixel, indirect_size_px));
+  const ivec2 pixel = representative_pixel(clamp(map_pixel, ivec2(0), indirect_size_px - 1));
+  const float depth = texelFetch(g_depth, pixel, 0).r;
+  const float safe_depth = depth > 0.0 ? depth : 1.0;
+  return PatchPoint(inside && depth > 0.0, map_pixel, position_from_depth(vec2(pixel) + 0.5, safe_depth),
+                    unit_from_octahedral(unpackSnorm2x16(texelFetch(g_surface, pixel, 0).x)), view_depth(safe_depth),
+                    texelFetch(g_material, pixel, 0).x & 0xffffu);
+}
