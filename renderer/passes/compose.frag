@@ -8,6 +8,7 @@
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/lights.glsl"
+#include "shaders/finite.glsl"
 
 // a: 1 + luminance of all light on lit surfaces, so that every view is exposed alike; -1 on unlit surfaces.
 layout(location = 0) out vec4 picture;
@@ -84,5 +85,5 @@ void main() {
   // Unlit surfaces show their colour as it is, whatever the exposure.
   const bool unlit = texelFetch(g_emission, pixel, 0).a > 0.5;
   const vec4 surface = surface_value(pixel, point, gl_FragCoord.xy / vec2(camera.size_px.xy));
-  picture = vec4(surface.rgb, unlit ? -1.0 : surface.a);
+  picture = finite_light(vec4(surface.rgb, unlit ? -1.0 : surface.a));
 }

@@ -15,7 +15,8 @@
 
 namespace lightwell {
 
-/// std430 layout, 32 bytes; `struct Ray` in shaders/ray.glsl. A ray with t_max < t_min is inactive: a miss at no cost.
+/// std430 layout, 32 bytes; `struct Ray` in shaders/ray.glsl. A ray with t_max < t_min, or that is not finite,
+/// is inactive: a miss at no cost.
 struct Ray {
   glm::vec3 origin_ws;
   float t_min;

@@ -10,10 +10,10 @@
 #include "server/command_line/add_option.h"
 #include "server/command_line/output_file.h"
 #include "server/command_line/progress.h"
-#include "server/command_line/settings_options.h"
 #include "server/command_line/thesis/bench_plot.h"
 #include "server/command_line/thesis/bench_report.h"
 #include "server/command_line/thesis/frame_request.h"
+#include "server/command_line/thesis/picture_options.h"
 #include "server/command_line/thesis/tessellated_terrain.h"
 
 namespace lightwell {
@@ -128,8 +128,8 @@ Status write_text(const std::string& path, const std::string& text) {
 
 // Found out before minutes of work, not after them.
 ExitCode check_arguments(const BenchThesisArguments& arguments) {
-  if (const Status status = check_settings(arguments.settings, glm::ivec2(arguments.side_px)); !status)
-    return report_usage(Error{status.error().kind, "--" + status.error().where, status.error().what});
+  if (const Status status = check_picture_options(arguments.side_px, arguments.settings); !status)
+    return report_usage(status.error());
   if (!arguments.plot.empty() && !arguments.plot.ends_with(".svg"))
     return report_usage(invalid_input("--plot", "\"" + arguments.plot + "\" does not end in .svg"));
   for (const std::string& file : {arguments.json, arguments.plot})
@@ -145,17 +145,13 @@ void add_bench_thesis_options(CLI::App& app, BenchThesisArguments& arguments) {
              "Rows of tables 6.1 (1 to 18) and 6.2 (19 to 36), as in 1,4:6; or none", "all");
   add_integer(app, "--most-triangles", arguments.most_triangles, 0, 6'000'000,
               "The finest terrain of the cost against triangles; 0 leaves it out");
-  add_integer(app, "--side", arguments.side_px, kLeastSide_px, kMostSide_px,
-              "The pictures' side in pixels; indirect maps keep their share of it");
   add_integer(app, "--frames", arguments.most_frames, 1, 10'000, "Frames measured for each row, at most");
   add_parsed(
       app, "--budget", arguments.budget_s, [](const std::string& text) { return parse_number(text, 0.0, 1e6); },
       "SECONDS", "Time for each row, after which no further frame begins; one is measured in any case", "20");
   app.add_option("--json", arguments.json, "Write what was measured as JSON")->type_name("FILE");
   app.add_option("--plot", arguments.plot, "Write it as curves, an .svg")->type_name("FILE");
-  app.option_defaults()->group("Light");
-  add_thesis_options(app, arguments.settings);
-  add_device_options(app, arguments.device, arguments.tracer);
+  add_picture_options(app, arguments.side_px, arguments.settings, arguments.device, arguments.tracer);
 }
 
 ExitCode run_bench_thesis(const BenchThesisArguments& arguments) {

@@ -11,9 +11,9 @@
 #include "renderer/tracing/embree/embree_tracer.h"
 #include "server/command_line/add_option.h"
 #include "server/command_line/progress.h"
-#include "server/command_line/settings_options.h"
 #include "server/command_line/thesis/figure_sheet.h"
 #include "server/command_line/thesis/frame_request.h"
+#include "server/command_line/thesis/picture_options.h"
 
 namespace lightwell {
 
@@ -114,8 +114,8 @@ struct Figures {
 
 // Found out before minutes of work, not after them.
 ExitCode prepare(const FiguresArguments& arguments) {
-  if (const Status status = check_settings(arguments.settings, glm::ivec2(arguments.side_px)); !status)
-    return report_usage(Error{status.error().kind, "--" + status.error().where, status.error().what});
+  if (const Status status = check_picture_options(arguments.side_px, arguments.settings); !status)
+    return report_usage(status.error());
   if (const Result<int> width = label_width("font", 12); !width)
     return report(Error{ErrorKind::kInternal, width.error().where, width.error().what});
   std::error_code error;
@@ -130,11 +130,7 @@ ExitCode prepare(const FiguresArguments& arguments) {
 void add_figures_options(CLI::App& app, FiguresArguments& arguments) {
   app.add_option("DIR", arguments.folder, "Where the pictures go; made if it does not exist")->required();
   add_parsed(app, "--only", arguments.figures, select_figures, "FIGURES", "Some of them, as in 6.1,6.5", "all");
-  add_integer(app, "--side", arguments.side_px, kLeastSide_px, kMostSide_px,
-              "The pictures' side in pixels; indirect maps keep their share of it");
-  app.option_defaults()->group("Light");
-  add_thesis_options(app, arguments.settings);
-  add_device_options(app, arguments.device, arguments.tracer);
+  add_picture_options(app, arguments.side_px, arguments.settings, arguments.device, arguments.tracer);
 }
 
 ExitCode run_figures(const FiguresArguments& arguments) {

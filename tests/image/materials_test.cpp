@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <glm/gtc/type_precision.hpp>
 
 #include "tests/image/test_scenes.h"
 
@@ -14,11 +16,6 @@ Settings one_bounce() {
   settings.samples = 256;
   settings.indirect_size = 32;
   return settings;
-}
-
-void add_white_sky(Scene& scene) {
-  scene.environment.zenith_radiance = scene.environment.horizon_radiance = scene.environment.ground_radiance =
-      glm::vec3(1.0f);
 }
 
 Primitive& only_primitive(Scene& scene, std::shared_ptr<Mesh>& copy) {
@@ -34,24 +31,34 @@ Material metal(float roughness) {
   return material;
 }
 
-// Far outside a texture that clamps, its edge alone is seen, however small the picture of it is.
-TEST(Textures, ClampedOnesShowTheirEdgeAtEveryLevel) {
-  auto image = std::make_shared<Image>();
-  image->size_px = {64, 64};
-  for (int i = 0; i < 64 * 64; ++i)
-    for (const int value : {i % 64 < 16 ? 0 : 255, i % 64 < 16 ? 255 : 0, 0, 255})  // green left, red right
-      image->rgba.push_back(static_cast<std::uint8_t>(value));
+constexpr glm::u8vec4 kRed(255, 0, 0, 255), kGreen(0, 255, 0, 255), kBlue(0, 0, 255, 255);
+
+/// A white quad that faces +Z under a white sky, with a picture of 64 x 64 texels.
+Scene textured_quad(const std::function<glm::u8vec4(int x, int y)>& texel, const TextureUse& use,
+                    const Sampler& sampler, std::vector<glm::vec2> uv) {
   Material material = lambert(glm::vec3(1.0f));
-  material.base_color_texture.texture = 0;
+  material.base_color_texture = use;
   SceneMaker maker;
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material));
   Scene scene = maker.take();
+  auto image = std::make_shared<Image>();
+  image->size_px = {64, 64};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (int channel = 0; channel < 4; ++channel) image->rgba.push_back(texel(x, y)[channel]);
   scene.images.push_back(image);
-  scene.textures.push_back({"", 0, {.wrap_s = Wrap::kClampToEdge, .wrap_t = Wrap::kRepeat}});
+  scene.textures.push_back({"", 0, sampler});
   std::shared_ptr<Mesh> mesh;
-  Primitive& quad = only_primitive(scene, mesh);
-  quad.uv0 = {{-9, 0}, {-1, 0}, {-1, 8}, {-9, 8}};
+  only_primitive(scene, mesh).uv0 = std::move(uv);
   add_white_sky(scene);
+  return scene;
+}
+
+// Far outside a texture that clamps, its edge alone is seen, however small the picture of it is.
+TEST(Textures, ClampedOnesShowTheirEdgeAtEveryLevel) {
+  const Sampler clamped{.wrap_s = Wrap::kClampToEdge, .wrap_t = Wrap::kRepeat};
+  const Scene scene = textured_quad([](int x, int) { return x < 16 ? kGreen : kRed; }, {.texture = 0}, clamped,
+                                    {{-9, 0}, {-1, 0}, {-1, 8}, {-9, 8}});
   const Pixels pixels = render(scene, look_at({0, 0, 2}, {0, 0, 0}), one_bounce());
   EXPECT_GT(pixels.center().g, 0.9f);
   EXPECT_LT(pixels.center().r, 0.01f);
@@ -60,25 +67,10 @@ TEST(Textures, ClampedOnesShowTheirEdgeAtEveryLevel) {
 // The example in KHR_texture_transform's text: half a scale, a quarter turn and an offset of one down show the lower
 // left quarter of the picture, and nothing else.
 TEST(Textures, TurnTheWayTheExtensionSays) {
-  auto image = std::make_shared<Image>();
-  image->size_px = {64, 64};
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) {
-      const bool lower_left = x < 32 && y >= 32;
-      for (const int value : {lower_left ? 0 : 255, 0, lower_left ? 255 : 0, 255})
-        image->rgba.push_back(static_cast<std::uint8_t>(value));
-    }
-  Material material = lambert(glm::vec3(1.0f));
-  material.base_color_texture = {
-      .texture = 0, .offset = {0.0f, 1.0f}, .rotation = 1.57079632679f, .scale = glm::vec2(0.5f)};
-  SceneMaker maker;
-  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material));
-  Scene scene = maker.take();
-  scene.images.push_back(image);
-  scene.textures.push_back({"", 0, {.wrap_s = Wrap::kRepeat, .wrap_t = Wrap::kRepeat}});
-  std::shared_ptr<Mesh> mesh;
-  only_primitive(scene, mesh).uv0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-  add_white_sky(scene);
+  const TextureUse turned{.texture = 0, .offset = {0.0f, 1.0f}, .rotation = 1.57079632679f, .scale = glm::vec2(0.5f)};
+  const Sampler repeated{.wrap_s = Wrap::kRepeat, .wrap_t = Wrap::kRepeat};
+  const Scene scene = textured_quad([](int x, int y) { return x < 32 && y >= 32 ? kBlue : kRed; }, turned, repeated,
+                                    {{0, 1}, {1, 1}, {1, 0}, {0, 0}});
   const Pixels pixels = render(scene, look_at({0, 0, 3}, {0, 0, 0}, 0.3f), one_bounce());
   EXPECT_GT(pixels.mean().b, 0.9f);
   EXPECT_LT(pixels.mean().r, 0.02f);

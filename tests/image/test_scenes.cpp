@@ -32,6 +32,11 @@ Material lambert(glm::vec3 albedo, glm::vec3 emission) {
   return material;
 }
 
+void add_white_sky(Scene& scene) {
+  scene.environment.zenith_radiance = scene.environment.horizon_radiance = scene.environment.ground_radiance =
+      glm::vec3(1.0f);
+}
+
 int SceneMaker::material(const Material& material) {
   scene_.materials.push_back(material);
   return static_cast<int>(scene_.materials.size()) - 1;

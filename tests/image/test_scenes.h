@@ -16,6 +16,9 @@ Renderer& shared_renderer();
 /// A Lambert material: no specular lobe at all.
 Material lambert(glm::vec3 albedo, glm::vec3 emission = glm::vec3(0.0f));
 
+/// 1 nit from everywhere.
+void add_white_sky(Scene& scene);
+
 /// Builds scenes from quads.
 class SceneMaker {
  public:

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/unit/gltf_builder.h"
+#include "tests/unit/gltf_loaded.h"
 
 namespace lightwell {
 namespace {
@@ -17,15 +17,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr float kTolerance = 1e-5f;
-
-Scene loaded(const GltfBuilder& builder) {
-  Result<Scene> scene = builder.load();
-  if (!scene) {
-    ADD_FAILURE() << scene.error().message();
-    return {};
-  }
-  return std::move(*scene);
-}
 
 /// The first primitive of the first mesh.
 Primitive primitive_of(const GltfBuilder& builder) {
