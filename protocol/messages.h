@@ -45,12 +45,15 @@ struct FreeCamera {
 
 using CameraSpec = std::variant<DefaultCamera, SceneCamera, FreeCamera>;
 
+/// SettingsSpec::bounces of "inf": paths end by chance alone.
+constexpr std::int32_t kEndlessBounces = -1;
+
 /// How a picture is made; what is absent keeps its value (in a patch) or has the renderer's default. For the two
 /// members that null has a meaning for, the outer optional says "given" and the inner one "not null".
 struct SettingsSpec {
   std::optional<std::string> method;
   std::optional<std::int32_t> samples;        // 1 or more
-  std::optional<std::int32_t> bounces;        // 0 or more
+  std::optional<std::int32_t> bounces;        // 0 or more, or kEndlessBounces
   std::optional<std::int32_t> indirect_size;  // pixels, 1 or more
   std::optional<std::string> estimator;
   std::optional<std::string> view;

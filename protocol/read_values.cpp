@@ -43,6 +43,15 @@ void read_color(const Value& value, Vector3& out) {
   if (!value.reading.failed()) out = color;
 }
 
+void read_bounces(const Value& value, std::int32_t& out) {
+  if (value.json == "inf")
+    out = kEndlessBounces;
+  else if (value.json.is_string())
+    value.fail("must be an integer or \"inf\", not " + in_words(value.json));
+  else
+    ReadInteger<std::int32_t>{0, 0x7fffffff}(value, out);
+}
+
 template <class Enum>
 void read_name(const Value& value, Enum& out, std::optional<Enum> (*from_name)(std::string_view), const char* names) {
   if (!value.json.is_string()) return value.fail("must be a string, not " + in_words(value.json));
@@ -93,7 +102,7 @@ void read_settings(const Value& value, SettingsSpec& out) {
   ObjectReader object(value);
   object.optional("method", settings.method, read_token);
   object.optional("samples", settings.samples, at_least_one);
-  object.optional("bounces", settings.bounces, ReadInteger<std::int32_t>{0, 0x7fffffff});
+  object.optional("bounces", settings.bounces, read_bounces);
   object.optional("indirect_size", settings.indirect_size, at_least_one);
   object.optional("estimator", settings.estimator, read_token);
   object.optional("view", settings.view, read_token);

@@ -182,7 +182,8 @@ Json to_json(const SettingsSpec& settings) {
   Json object = Json::object();
   give(object, "method", settings.method);
   give(object, "samples", settings.samples);
-  give(object, "bounces", settings.bounces);
+  give(object, "bounces", settings.bounces,
+       [](std::int32_t bounces) { return bounces == kEndlessBounces ? Json("inf") : Json(bounces); });
   give(object, "indirect_size", settings.indirect_size);
   give(object, "estimator", settings.estimator);
   give(object, "view", settings.view);

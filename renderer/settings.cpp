@@ -105,7 +105,9 @@ Status check_patches(const Settings& settings, glm::ivec2 size_px) {
 }
 
 Status check_settings(const Settings& settings, glm::ivec2 size_px) {
-  const bool unlimited = settings.bounces == kUnlimitedBounces && settings.method == Method::kReference;
+  const bool unlimited = settings.bounces == kUnlimitedBounces;
+  if (unlimited && settings.method != Method::kReference)
+    return invalid_input("bounces", "inf is for the method reference alone");
   const Status checks[] = {check_range("width", size_px.x, 1, 16384),
                            check_range("height", size_px.y, 1, 16384),
                            check_range("samples", settings.samples, 1, 4096),

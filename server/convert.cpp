@@ -26,7 +26,7 @@ class SettingsReader {
     read_name("view", spec.view, view_kind_from_name, settings_.view);
     read_name("tone_map", spec.tone_map, tone_map_from_name, settings_.tone_map);
     read_value(spec.samples, settings_.samples);
-    read_value(spec.bounces, settings_.bounces);
+    read_bounces(spec.bounces);
     read_value(spec.indirect_size, settings_.indirect_size);
     read_value(spec.seed, settings_.seed);
     read_value(spec.shadow_size, settings_.shadow_size);
@@ -55,6 +55,15 @@ class SettingsReader {
       out = *value;
     else
       problem_ = unprocessable(pointer_ + "/" + member, "there is no " + std::string(member) + " \"" + *name + "\"");
+  }
+
+  void read_bounces(const std::optional<std::int32_t>& bounces) {
+    if (!bounces || problem_) return;
+    if (*bounces >= kUnlimitedBounces)
+      problem_ = unprocessable(pointer_ + "/bounces",
+                               "bounces is " + std::to_string(*bounces) + "; it may be at most 64, or \"inf\"");
+    else
+      settings_.bounces = *bounces == protocol::kEndlessBounces ? kUnlimitedBounces : *bounces;
   }
 
   template <class T>
@@ -105,7 +114,7 @@ SettingsSpec spec_of(const Settings& settings) {
   SettingsSpec spec;
   spec.method = name_of(settings.method);
   spec.samples = settings.samples;
-  spec.bounces = settings.bounces;
+  spec.bounces = settings.bounces == kUnlimitedBounces ? protocol::kEndlessBounces : settings.bounces;
   spec.indirect_size = settings.indirect_size;
   spec.estimator = name_of(settings.estimator);
   spec.view = name_of(settings.view);

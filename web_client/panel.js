@@ -13,6 +13,8 @@ const kViews = [
   ["normal", "Normals"], ["depth", "Depth"], ["occlusion-distance", "Distance of hits"],
 ];
 const kOwnCamera = "own";
+// The last step of the bounces' slider stands for "inf", which the method reference alone knows.
+const kMostBounces = 8, kEndless = kMostBounces + 1;
 const kExposure = { min: -16, max: 16, step: 0.1 };
 
 export class Panel {
@@ -110,7 +112,11 @@ export class Panel {
   }
 
   transport_rows() {
-    const method = this.setting("method", make_choice, { label: "Method", options: [] });
+    const method = make_choice({
+      label: "Method", options: [],
+      on_change: (name) => this.owner.push({ settings: this.settings_for_method(name) }),
+    });
+    this.keep(["settings"], (model) => method.set(model.settings.method));
     this.keep(["methods"], (model) => method.offer(model.methods.map((name) => [name, kMethodNames[name] ?? name])));
     const samples = this.setting("samples", make_slider, {
       label: "Samples", values: kSamples, hint: "Directions for each pixel of the indirect map",
@@ -120,9 +126,7 @@ export class Panel {
       label: "Indirect map", values: kIndirectSizes, format: (value) => `${value} px`,
       hint: "Longer side of the map that indirect light is computed on",
     });
-    const bounces = this.setting("bounces", make_slider, {
-      label: "Bounces", min: 0, max: 8, step: 1, format: (value) => (Number(value) === 0 ? "None" : String(value)),
-    });
+    const bounces = this.bounces_slider();
     const denoise = this.setting("denoise", make_toggle, {
       label: "Denoise", hint: "Smooths the indirect map without crossing edges",
     });
@@ -130,6 +134,26 @@ export class Panel {
       label: "Multiple scattering", hint: "Keeps the light that bounces between the microfacets of rough surfaces",
     });
     return [method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row];
+  }
+
+  /** What a choice of the method changes: a number of bounces that it does not know goes with the old one. */
+  settings_for_method(method) {
+    const is_endless = this.model.settings.bounces === "inf" && method !== "reference";
+    return is_endless ? { method, bounces: kMostBounces } : { method };
+  }
+
+  bounces_slider() {
+    const names = { 0: "None", [kEndless]: "No limit" };
+    const tell = (step, at_ms) =>
+      this.owner.push({ settings: { bounces: step === kEndless ? "inf" : step } }, at_ms);
+    const slider = make_slider({
+      label: "Bounces", min: 0, max: kEndless, step: 1, format: (step) => names[step] ?? String(step), on_input: tell,
+    });
+    this.keep(["settings"], ({ settings }) => {
+      slider.limit(settings.method === "reference" ? kEndless : kMostBounces);
+      slider.set(settings.bounces === "inf" ? kEndless : settings.bounces);
+    });
+    return slider;
   }
 
   advanced_rows() {

@@ -199,8 +199,12 @@ const camera = nullable((value, pointer, strict) => {
   (names_one ? object({ index }) : free_camera)(value, pointer, strict);
 });
 
+const bounces = (value, pointer) => {
+  if (value !== "inf") index(value, pointer);
+};
+
 const settings = object({}, {
-  method: token, samples: at_least_one, bounces: index, indirect_size: at_least_one, estimator: token, view: token,
+  method: token, samples: at_least_one, bounces, indirect_size: at_least_one, estimator: token, view: token,
   exposure_ev: nullable(number(-64, 64)), tone_map: token, seed: u32,
   background: nullable(array(number(0), 3, 3)), shadow_size: at_least_one, shadow_filter: at_least_one,
   denoise: boolean, multiple_scattering: boolean,

@@ -16,6 +16,18 @@ after(() => fixture.stop());
 
 const status = () => page.textContent("#status-text");
 
+const bounces = () => page.locator(".row", { has: fixture.setting("Bounces") }).locator("output").textContent();
+
+test("bounces without a limit come and go with the method", async () => {
+  await fixture.pictures_around(() => fixture.setting("Method").selectOption("reference"));
+  await fixture.pictures_around(() => fixture.setting("Bounces").fill("9"));
+  assert.equal(await bounces(), "No limit");
+  await fixture.pictures_around(() => fixture.setting("Method").selectOption("thesis"));
+  assert.equal(await bounces(), "8");
+  await fixture.pictures_around(() => fixture.setting("Bounces").fill("1"));
+  assert.deepEqual(viewer.errors, []);
+});
+
 test("the final picture is refined by reference, and a drag ends that at once", async () => {
   await page.keyboard.press("Space");
   await viewer.final_picture();

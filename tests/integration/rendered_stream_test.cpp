@@ -113,6 +113,25 @@ TEST_F(RenderedStreamTest, ViewsAndEditsShow) {
   EXPECT_LT(mean(decoded(after.body)), before);
 }
 
+TEST_F(RenderedStreamTest, BouncesMayBeWithoutALimitForReference) {
+  const auto rendered = [](const char* method, const json& bounces) {
+    return post("/v1/render",
+                render_request({{"settings", {{"method", method}, {"bounces", bounces}, {"exposure_ev", 0}}}}));
+  };
+  const Answer none = rendered("reference", 0), endless = rendered("reference", "inf");
+  ASSERT_EQ(none.status, 200) << none.body;
+  ASSERT_EQ(endless.status, 200) << endless.body;
+  EXPECT_GT(mean(decoded(endless.body)), mean(decoded(none.body)));
+  for (const Answer& refused : {rendered("thesis", "inf"), rendered("reference", 65), rendered("reference", 1 << 20)}) {
+    EXPECT_EQ(refused.status, 422);
+    EXPECT_EQ(json::parse(refused.body)["pointer"], "/settings/bounces") << refused.body;
+  }
+  const json session{{"scene", "cornell"}, {"settings", {{"method", "reference"}, {"bounces", "inf"}}}};
+  const Answer made = post("/v1/sessions", session);
+  ASSERT_EQ(made.status, 201) << made.body;
+  EXPECT_EQ(json::parse(made.body)["settings"]["bounces"], "inf") << made.body;
+}
+
 TEST_F(RenderedStreamTest, AnUploadIsRendered) {
   ASSERT_EQ(ask(server_->port(), "PUT", "/v1/scenes/triangle", triangle_glb(), "model/gltf-binary").status, 201);
   const Answer answer = post("/v1/render", render_request({{"scene", "triangle"}}));
