@@ -34,6 +34,7 @@ let picture_size = localStorage.getItem(kSizeKey) ?? "auto";
 let asked_size = { width: 0, height: 0 };
 let was_open = false;
 let held_acks = [];
+let pictures_shown = 0;  // over all streams
 
 const inputs = new Inputs(send_input);
 const model = new SessionModel((seq, member) => inputs.is_newer_than(seq, member));
@@ -43,7 +44,9 @@ const banner = new Banner(() => connection.connect());
 
 function send_input(seq, change) {
   try {
-    return connection.send(input(seq, change));
+    const sent = connection.send(input(seq, change));
+    if (sent) stage.dataset.asked = seq;
+    return sent;
   } catch (error) {  // a value the protocol does not know; kept, it would stop every later input
     if (!(error instanceof ProtocolError)) throw error;
     show_note(`That cannot be asked for: ${error.message}`, "trouble");
@@ -146,7 +149,7 @@ function welcomed(message, is_new_session) {
   stats.restart();
   model.poses.clear();
   if (is_new_session) inputs.restart();
-  stage.dataset.session = message.session;
+  Object.assign(stage.dataset, { session: message.session, seq: 0, asked: inputs.last_seq, final: false });
   model.apply(message);
   if (lost) push({ camera: own_camera, settings, playing });
   if (edits.length > 0 && (lost || is_new_session)) push({ edits });
@@ -171,7 +174,8 @@ function frame_done(frame, times) {
   if (times.shown_ms === undefined) return;
   model.frame_shown(header);
   stats.frame_shown(frame, times, inputs.answered(header.input_seq, times.shown_ms));
-  Object.assign(stage.dataset, { frame: header.frame, seq: header.input_seq, final: header.is_final });
+  pictures_shown += 1;
+  Object.assign(stage.dataset, { shown: pictures_shown, seq: header.input_seq, final: header.is_final });
   handles.place();
   chrome.show_status();
 }

@@ -8,6 +8,7 @@ const kLongestWaitMs = 8000;
 const kWelcomeWithinMs = 15000;
 const kPingEveryMs = 2000;
 const kSilenceMs = 8000;  // no word from the server for so long: the line is dead although nobody closed it
+const kOwnSleepMs = 2 * kPingEveryMs;  // a pulse as late as this: it was the page that slept, and the line may be well
 
 /**
  * What the connection asks of its owner, and tells it.
@@ -114,6 +115,7 @@ export class Connection {
     this.farewell = null;
     this.heard_ms = performance.now();
     this.welcome_timer = setTimeout(() => this.drop(socket), kWelcomeWithinMs);
+    this.pulse_ms = this.heard_ms;
     const pulse = setInterval(() => this.check_pulse(socket), kPingEveryMs);
     socket.onopen = () => socket.send(hello({ ...this.owner.hello(), resume: this.resume }));
     socket.onmessage = ({ data }) => {
@@ -179,9 +181,12 @@ export class Connection {
   }
 
   check_pulse(socket) {
+    const now_ms = performance.now();
+    if (now_ms - this.pulse_ms > kOwnSleepMs) this.heard_ms = now_ms;
+    this.pulse_ms = now_ms;
     if (!this.is_open || this.is_paused) return;
-    if (performance.now() - this.heard_ms > kSilenceMs) this.drop(socket);
-    else this.send(ping(performance.now()));
+    if (now_ms - this.heard_ms > kSilenceMs) this.drop(socket);
+    else this.send(ping(now_ms));
   }
 
   /** Gives a socket up without waiting for the other side's farewell, which on a dead line never comes. */

@@ -13,6 +13,7 @@ using protocol::Decoded;
 using protocol::ImageFormat;
 
 constexpr std::uint64_t kMaxJsonBytes = 1u << 20;
+constexpr int kClientClosedRequest = 499;  // never sent, for nobody is there; what logs and metrics call it since nginx
 
 /// A picture to make once, as a request described it.
 struct Order {
@@ -92,6 +93,8 @@ Response carry_out(Order order, const Services& services, const Request& request
   services.render_loop.add(std::move(job), Share::kJobs);
   const Result<Frame> frame = result.get();
   --services.renders_waiting;
+  if (!frame && *request.gone)
+    return http::problem_response(protocol::make_problem(kClientClosedRequest, frame.error().what));
   if (!frame) return http::problem_response(problem_of(frame.error()));
   return http::picture_response(*frame, format);
 }

@@ -25,7 +25,7 @@ struct Request {
   std::string body;
   Peer peer;
   bool keep_alive = true;                   // false: the answer must say "Connection: close"
-  std::shared_ptr<std::atomic<bool>> gone;  // set once the client has closed its side: long work may stop
+  std::shared_ptr<std::atomic<bool>> gone;  // set once the client has left: its answer is in vain
 };
 
 /// The rest of an answer, made while it is sent: a file that is large, events as they happen. Asked on an I/O thread.

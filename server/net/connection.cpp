@@ -1,40 +1,28 @@
 #include "server/net/connection.h"
 
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 // <utility> before Asio: its 1.74 forgets it.
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/ssl/error.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
 
 #include "server/net/body_decoder.h"
+#include "server/net/transport.h"
 #include "server/net/web_socket.h"
 
 namespace lightwell::net {
 namespace {
 
-namespace asio = boost::asio;
-using boost::system::error_code;
 using std::chrono::steady_clock;
 
 constexpr std::size_t kReadBytes = 16 * 1024;
-constexpr std::size_t kLargeReadBytes = 256 * 1024;  // while a large body arrives
-constexpr std::size_t kMaxLingerBytes = 1 << 20;
-constexpr auto kLinger = std::chrono::seconds(2);
-constexpr auto kBodyPulse = std::chrono::seconds(5);  // between questions to a body that has nothing yet
-constexpr auto kLateHead = std::chrono::seconds(1);   // for the request of one who connects while the server drains
+constexpr std::size_t kLargeReadBytes = 256 * 1024;      // while a large body arrives
+constexpr auto kBodyPulse = std::chrono::seconds(5);     // between questions to a body that has nothing yet
+constexpr auto kWatch = std::chrono::milliseconds(500);  // between looks at a client whose answer is being made
+constexpr auto kLateHead = std::chrono::seconds(1);      // for the request of one who connects while the server drains
 
 /// What the connection does after a request.
 enum class After { kNextRequest, kClose, kGone };
@@ -49,36 +37,13 @@ Refusal too_slow(const char* part, std::chrono::milliseconds limit) {
       408, std::string("the request's ") + part + " did not arrive in time (" + std::to_string(seconds) + " s)", {}};
 }
 
-/// Gives bytes of a budget back when it goes.
-class BudgetShare {
- public:
-  explicit BudgetShare(ByteBudget& budget) : budget_(budget) {}
-  ~BudgetShare() { budget_.give_back(taken_); }
-  BudgetShare(const BudgetShare&) = delete;
-  BudgetShare& operator=(const BudgetShare&) = delete;
-
-  /// Takes what is missing to `bytes` in all.
-  bool grow_to(std::uint64_t bytes) {
-    if (bytes <= taken_) return true;
-    if (!budget_.take(bytes - taken_)) return false;
-    taken_ = bytes;
-    return true;
-  }
-
- private:
-  ByteBudget& budget_;
-  std::uint64_t taken_ = 0;
-};
-
 template <class Stream>
 class Connection : public std::enable_shared_from_this<Connection<Stream>> {
  public:
   Connection(Stream stream, Peer peer, std::shared_ptr<Shared> shared)
       : shared_(std::move(shared)),
-        strand_(stream.get_executor()),
-        stream_(std::move(stream)),
+        transport_(std::make_shared<Transport<Stream>>(std::move(stream), shared_->options)),
         peer_(std::move(peer)),
-        patience_(strand_),
         draining_(shared_->connections.draining()),
         came_late_(draining_) {}
 
@@ -96,69 +61,58 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
  private:
   /// Where the answer of a worker is left for the strand. Outlives both.
   struct Exchange {
-    explicit Exchange(const Strand& strand) : answered(strand, steady_clock::time_point::max()) {}
+    explicit Exchange(const Strand& strand) : timer(strand) {}
     void signal() {
       woken = true;
-      answered.cancel();
+      timer.cancel();
+    }
+    /// Until it has been woken, or for so long.
+    Awaitable<void> wait(steady_clock::duration limit) {
+      error_code ignored;
+      timer.expires_after(limit);
+      if (!woken) co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
     }
 
-    asio::steady_timer answered;  // never fires while the answer is waited for: cancelled by `signal`
+    asio::steady_timer timer;
     bool woken = false;
     std::optional<Answer> answer;
   };
 
-  const Strand& executor() const { return strand_; }
-  auto& socket() { return boost::beast::get_lowest_layer(stream_).socket(); }
-  auto& lowest() { return boost::beast::get_lowest_layer(stream_); }
+  const Strand& executor() const { return transport_->strand(); }
 
-  asio::awaitable<void> run(std::shared_ptr<Connection> self) {
-    After after = co_await shake_hands() ? After::kNextRequest : After::kGone;
+  Awaitable<void> run(std::shared_ptr<Connection> self) {
+    After after = co_await shake_hands();
     while (after == After::kNextRequest) after = co_await serve_one();
-    if (after == After::kClose) co_await linger();
+    if (after == After::kClose) co_await transport_->linger();
     self.reset();
   }
 
-  /// False if the other side does not speak TLS where it must.
-  asio::awaitable<bool> shake_hands() {
-    if constexpr (std::is_same_v<Stream, TlsStream>) {
-      error_code error;
-      lowest().expires_after(shared_->options.head_timeout);
-      co_await stream_.async_handshake(asio::ssl::stream_base::server,
-                                       asio::redirect_error(asio::use_awaitable, error));
-      lowest().expires_never();
-      if (!error) co_return true;
-      if (ERR_GET_REASON(static_cast<unsigned long>(error.value())) == SSL_R_HTTP_REQUEST) co_await refuse_plain_http();
-      co_return false;
-    }
-    co_return true;
-  }
-
-  /// Whoever took the port for one without TLS is told so in words it understands.
-  asio::awaitable<void> refuse_plain_http() {
+  Awaitable<After> shake_hands() {
+    const Handshake handshake = co_await transport_->shake_hands();
+    if (handshake == Handshake::kDone) co_return After::kNextRequest;
+    if (handshake == Handshake::kFailed) co_return After::kGone;
+    // Whoever took the port for one without TLS is told so in words it understands.
     const Refusal refusal{400, "this port speaks TLS: use https", {}};
-    const std::string response = shared_->application->refusal_response(refusal, false, nullptr);
-    error_code ignored;
-    lowest().expires_after(kLinger);
-    co_await asio::async_write(lowest(), asio::buffer(response), asio::redirect_error(asio::use_awaitable, ignored));
-    co_await linger();
+    co_await transport_->write_plain(shared_->application->refusal_response(refusal, false, nullptr));
+    co_return After::kClose;
   }
 
-  asio::awaitable<void> refuse_at_once(std::shared_ptr<Connection> self) {
+  Awaitable<void> refuse_at_once(std::shared_ptr<Connection> self) {
     std::string response =
         shared_->application->refusal_response(busy("too many connections are open"), false, nullptr);
-    co_await write(std::move(response));
-    co_await linger();
+    co_await transport_->write(std::move(response));
+    co_await transport_->linger();
     self.reset();
   }
 
   void drain() {
     draining_ = true;
-    if (idle_) lowest().close();
+    if (idle_) transport_->close();
     if (exchange_) exchange_->signal();  // a body that never ends asks whether it should
   }
 
   /// One request and its answer.
-  asio::awaitable<After> serve_one() {
+  Awaitable<After> serve_one() {
     std::size_t head_bytes = 0;
     Refusal refusal;
     const bool complete = co_await read_head(head_bytes, refusal);
@@ -173,13 +127,13 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     Admission admission = shared_->application->admit(head, peer_);
     if (auto* bad = std::get_if<Refusal>(&admission)) co_return co_await refuse(*bad, &head);
     if (auto* web_socket = std::get_if<WebSocketAdmission>(&admission)) {
-      co_await serve_web_socket(std::move(stream_), head, std::move(*web_socket), shared_, !buffer_.empty());
+      co_await serve_web_socket(transport_->take_stream(), head, std::move(*web_socket), shared_, !buffer_.empty());
       co_return After::kGone;
     }
     co_return co_await serve_http(std::move(head), std::get<HttpAdmission>(admission));
   }
 
-  asio::awaitable<bool> read_head(std::size_t& head_bytes, Refusal& refusal) {
+  Awaitable<bool> read_head(std::size_t& head_bytes, Refusal& refusal) {
     auto deadline =
         steady_clock::now() + (buffer_.empty() ? shared_->options.idle_timeout : shared_->options.head_timeout);
     if (came_late_) deadline = steady_clock::now() + kLateHead;
@@ -199,19 +153,19 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       idle_ = buffer_.empty();
       if (idle_ && draining_ && !came_late_) co_return false;
       const bool first = buffer_.empty();
-      const bool arrived = co_await read_some(kReadBytes, deadline);
+      const bool arrived = co_await transport_->read_some(buffer_, kReadBytes, deadline);
       idle_ = false;
-      if (!arrived && timed_out_ && !first) refusal = too_slow("head", shared_->options.head_timeout);
+      if (!arrived && transport_->timed_out() && !first) refusal = too_slow("head", shared_->options.head_timeout);
       if (!arrived) co_return false;
       if (first) deadline = steady_clock::now() + shared_->options.head_timeout;
     }
   }
 
-  asio::awaitable<After> serve_http(RequestHead head, HttpAdmission admission) {
+  Awaitable<After> serve_http(RequestHead head, HttpAdmission admission) {
     BudgetShare share(shared_->bodies);
     BodyDecoder decoder(head, admission.max_body_bytes);
     if (head.expects_continue && !decoder.done() && !decoder.failure() && buffer_.empty()) {
-      if (!co_await write("HTTP/1.1 100 Continue\r\n\r\n")) co_return After::kGone;
+      if (!co_await transport_->write("HTTP/1.1 100 Continue\r\n\r\n")) co_return After::kGone;
     }
     const auto start = steady_clock::now();
     while (!decoder.done()) {
@@ -222,8 +176,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       if (decoder.done()) break;
       const std::size_t room = decoder.size() > kLargeReadBytes ? kLargeReadBytes : kReadBytes;
       const auto deadline = transfer_deadline(shared_->options, start, decoder.size());
-      if (co_await read_some(room, deadline)) continue;
-      if (!timed_out_) co_return After::kGone;
+      if (co_await transport_->read_some(buffer_, room, deadline)) continue;
+      if (!transport_->timed_out()) co_return After::kGone;
       co_return co_await refuse(too_slow("body", shared_->options.stall_timeout));
     }
     const bool keep_alive = head.keep_alive && !draining_;
@@ -232,8 +186,9 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     co_return keep_alive ? After::kNextRequest : After::kClose;
   }
 
-  asio::awaitable<bool> answer(Request request) {
-    auto gone = std::make_shared<std::atomic<bool>>(false);
+  Awaitable<bool> answer(Request request) {
+    const auto gone = std::make_shared<std::atomic<bool>>(false);
+    const bool may_probe = request.head.minor_version > 0;
     request.gone = gone;
     auto exchange = std::make_shared<Exchange>(executor());
     shared_->application->answer(std::move(request), [self = this->shared_from_this(), exchange](Answer answer) {
@@ -242,184 +197,64 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
         exchange->signal();
       });
     });
-    watch_for_hang_up(gone, exchange);
-    error_code ignored;
-    while (!exchange->answer)
-      co_await exchange->answered.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
-    socket().cancel(ignored);  // the watch
-    if (!co_await write(std::move(exchange->answer->bytes))) co_return false;
+    while (!exchange->answer) {
+      co_await exchange->wait(kWatch);
+      if (!exchange->answer && !*gone) *gone = !co_await still_there(may_probe);
+    }
+    if (!co_await transport_->write(std::move(exchange->answer->bytes))) co_return false;
     if (!exchange->answer->rest) co_return true;
     exchange_ = exchange;
-    const bool sent = co_await write_rest(*exchange->answer->rest, gone, exchange);
+    const bool sent = co_await write_rest(*exchange->answer->rest, exchange);
     exchange_.reset();
     co_return sent;
   }
 
-  asio::awaitable<bool> write_rest(BodySource& rest, std::shared_ptr<std::atomic<bool>> gone,
-                                   std::shared_ptr<Exchange> exchange) {
+  /// Whether the client may still want its answer. One that has closed its side may wait for it, or have left for good:
+  /// bytes for one that has left come back as a reset, and an interim response is what a client may be sent at any time
+  /// and passes over (RFC 9110, 15.2). Not by HTTP/1.0.
+  Awaitable<bool> still_there(bool may_probe) {
+    const PeerState peer = transport_->peer();
+    if (peer != PeerState::kHalfClosed || !may_probe) co_return peer != PeerState::kGone;
+    co_return co_await transport_->write("HTTP/1.1 100 Continue\r\n\r\n");
+  }
+
+  Awaitable<bool> write_rest(BodySource& rest, std::shared_ptr<Exchange> exchange) {
     // Weakly, or the body would keep alive what keeps it.
     rest.set_waker([executor = executor(), weak = std::weak_ptr<Exchange>(exchange)] {
       if (auto woken = weak.lock()) asio::post(executor, [woken] { woken->signal(); });
     });
-    watch_for_hang_up(gone, exchange);
-    bool sent = true;
-    while (sent && !*gone) {
+    while (transport_->peer() != PeerState::kGone) {
       exchange->woken = false;
       std::optional<std::string> piece = rest.next();
-      if (!piece) break;
-      if (!piece->empty()) {
-        sent = co_await write(std::move(*piece));
-        continue;
-      }
-      error_code ignored;
-      exchange->answered.expires_after(kBodyPulse);
-      if (!exchange->woken) co_await exchange->answered.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+      if (!piece) co_return true;
+      if (piece->empty())
+        co_await exchange->wait(kBodyPulse);
+      else if (!co_await transport_->write(std::move(*piece)))
+        co_return false;
     }
-    error_code ignored;
-    socket().cancel(ignored);  // the watch
-    co_return sent && !*gone;
-  }
-
-  /// Tells the worker when the client has closed its side while it waits for the answer.
-  void watch_for_hang_up(std::shared_ptr<std::atomic<bool>> gone, std::shared_ptr<Exchange> exchange) {
-    const auto seen = [self = this->shared_from_this(), gone, exchange](error_code error) {
-      if (error) return;
-      char byte = 0;
-      if (::recv(self->socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0) return;
-      *gone = true;
-      exchange->signal();
-    };
-    socket().async_wait(asio::ip::tcp::socket::wait_read, seen);
+    co_return false;
   }
 
   /// Answers with a problem. The connection can go on only if the request has no body that is still to come.
-  asio::awaitable<After> refuse(Refusal refusal, const RequestHead* head = nullptr) {
+  Awaitable<After> refuse(Refusal refusal, const RequestHead* head = nullptr) {
     const bool keep_alive = head && head->keep_alive && head->framing == Framing::kNone && !draining_;
     std::string response = shared_->application->refusal_response(refusal, keep_alive, head);
     if (head && head->method == "HEAD") response.erase(std::min(response.find("\r\n\r\n") + 4, response.size()));
-    if (!co_await write(std::move(response))) co_return After::kGone;
+    if (!co_await transport_->write(std::move(response))) co_return After::kGone;
     co_return keep_alive ? After::kNextRequest : After::kClose;
   }
 
-  asio::awaitable<bool> read_some(std::size_t room, steady_clock::time_point deadline) {
-    const std::size_t old_size = buffer_.size();
-    buffer_.resize(old_size + room);
-    timed_out_ = false;
-    patience_.expires_at(deadline);
-    reading_ = true;
-    patience_.async_wait([self = this->shared_from_this(), deadline](error_code error) {
-      error_code ignored;
-      if (error || !self->reading_ || self->patience_.expiry() != deadline) return;
-      self->timed_out_ = true;  // cancelled, not closed: the answer can still be sent
-      self->socket().cancel(ignored);
-    });
-    error_code error;
-    const std::size_t count = co_await stream_.async_read_some(asio::buffer(buffer_.data() + old_size, room),
-                                                               asio::redirect_error(asio::use_awaitable, error));
-    reading_ = false;
-    patience_.cancel();
-    buffer_.resize(old_size + count);
-    co_return !error && count > 0;
-  }
-
-  asio::awaitable<bool> write(std::string bytes) {
-    const auto start = steady_clock::now();
-    for (std::size_t sent = 0; sent < bytes.size();) {
-      lowest().expires_at(transfer_deadline(shared_->options, start, sent));
-      error_code error;
-      sent += co_await stream_.async_write_some(asio::buffer(bytes.data() + sent, bytes.size() - sent),
-                                                asio::redirect_error(asio::use_awaitable, error));
-      if (error) co_return false;
-    }
-    lowest().expires_never();
-    co_return true;
-  }
-
-  /// Closes our side and reads on for a moment: closing with unread bytes would reset the connection, and the peer
-  /// might never see the answer.
-  asio::awaitable<void> linger() {
-    error_code ignored;
-    if constexpr (std::is_same_v<Stream, TlsStream>) {
-      lowest().expires_after(kLinger);
-      co_await stream_.async_shutdown(asio::redirect_error(asio::use_awaitable, ignored));
-    }
-    socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-    const auto deadline = steady_clock::now() + kLinger;
-    std::size_t count = 0;
-    buffer_.resize(kReadBytes);
-    for (std::size_t read = 0; read < kMaxLingerBytes; read += count) {
-      lowest().expires_at(deadline);
-      count =
-          co_await lowest().async_read_some(asio::buffer(buffer_), asio::redirect_error(asio::use_awaitable, ignored));
-      if (ignored || count == 0) break;
-    }
-  }
-
   std::shared_ptr<Shared> shared_;
-  Strand strand_;
-  Stream stream_;  // moved away once it has become a WebSocket
+  const std::shared_ptr<Transport<Stream>> transport_;
   Peer peer_;
-  std::string buffer_;           // what has arrived and is not consumed
-  asio::steady_timer patience_;  // with a peer that sends nothing
-  bool reading_ = false;
-  bool timed_out_ = false;  // it ended the last read
-  bool idle_ = false;       // waits for the first byte of a request
+  std::string buffer_;  // what has arrived and is not consumed
+  bool idle_ = false;   // waits for the first byte of a request
   bool draining_ = false;
   const bool came_late_;                // when the server drained already: one request, if it comes soon
   std::shared_ptr<Exchange> exchange_;  // while a body is sent as it is made
 };
 
 }  // namespace
-
-bool ByteBudget::take(std::uint64_t bytes) {
-  const auto wanted = static_cast<std::int64_t>(bytes);
-  if (left_.fetch_sub(wanted) >= wanted) return true;
-  left_ += wanted;
-  return false;
-}
-
-void ConnectionSet::add(const void* connection, std::function<void()> drain) {
-  std::lock_guard lock(mutex_);
-  if (!draining_) drains_[connection] = std::move(drain);
-}
-
-void ConnectionSet::remove(const void* connection) {
-  std::lock_guard lock(mutex_);
-  drains_.erase(connection);
-  if (drains_.empty()) emptied_.notify_all();
-}
-
-int ConnectionSet::size() const {
-  std::lock_guard lock(mutex_);
-  return static_cast<int>(drains_.size());
-}
-
-void ConnectionSet::drain_all() {
-  std::unordered_map<const void*, std::function<void()>> drains;
-  {
-    std::lock_guard lock(mutex_);
-    draining_ = true;
-    drains = drains_;
-  }
-  for (const auto& [connection, drain] : drains) drain();
-}
-
-bool ConnectionSet::draining() const {
-  std::lock_guard lock(mutex_);
-  return draining_;
-}
-
-bool ConnectionSet::wait_until_empty(std::chrono::milliseconds limit) {
-  std::unique_lock lock(mutex_);
-  return emptied_.wait_for(lock, limit, [this] { return drains_.empty(); });
-}
-
-steady_clock::time_point transfer_deadline(const ServerOptions& options, steady_clock::time_point start,
-                                           std::uint64_t bytes) {
-  const std::chrono::duration<double> allowed(static_cast<double>(bytes) / options.min_bytes_per_s);
-  const auto slowest = start + options.stall_timeout + std::chrono::duration_cast<steady_clock::duration>(allowed);
-  return std::min(steady_clock::now() + options.stall_timeout, slowest);
-}
 
 void serve_connection(TcpStream stream, Peer peer, std::shared_ptr<Shared> shared) {
   if (shared->tls) {

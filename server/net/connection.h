@@ -1,74 +1,9 @@
 // One connection, from its first byte to its last. Private to the connection layer: includes Asio.
 #pragma once
 
-#include <atomic>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ssl/context.hpp>
-#include <boost/asio/strand.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
-#include <condition_variable>
-#include <functional>
-#include <mutex>
-#include <optional>
-#include <unordered_map>
-
-#include "server/net/server.h"
+#include "server/net/shared.h"
 
 namespace lightwell::net {
-
-using Strand = boost::asio::strand<boost::asio::io_context::executor_type>;
-/// Plain TCP, or TLS over it. Everything that reads and writes is a template over the stream.
-using TcpStream = boost::beast::basic_stream<boost::asio::ip::tcp, Strand>;
-using TlsStream = boost::beast::ssl_stream<TcpStream>;
-
-/// A number of bytes shared by many takers.
-class ByteBudget {
- public:
-  explicit ByteBudget(std::uint64_t bytes) : left_(static_cast<std::int64_t>(bytes)) {}
-  /// False, and nothing taken, if fewer are left.
-  bool take(std::uint64_t bytes);
-  void give_back(std::uint64_t bytes) { left_ += static_cast<std::int64_t>(bytes); }
-
- private:
-  std::atomic<std::int64_t> left_;
-};
-
-/// The connections that are open, so that they can be told to end and waited for.
-class ConnectionSet {
- public:
-  /// `drain` is called from any thread, at most once. One that comes while the others are drained is not waited for.
-  void add(const void* connection, std::function<void()> drain);
-  void remove(const void* connection);
-  int size() const;
-  void drain_all();
-  bool draining() const;
-  bool wait_until_empty(std::chrono::milliseconds limit);
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable emptied_;
-  std::unordered_map<const void*, std::function<void()>> drains_;
-  bool draining_ = false;
-};
-
-/// What all connections of a server share.
-struct Shared {
-  explicit Shared(const ServerOptions& server_options)
-      : options(server_options), bodies(server_options.max_bodies_bytes) {}
-
-  Application* application = nullptr;            // set before the first connection
-  std::optional<boost::asio::ssl::context> tls;  // set before the first connection, if TLS is spoken
-  const ServerOptions options;
-  ByteBudget bodies;
-  ConnectionSet connections;
-};
-
-/// When a transfer that began at `start` and has moved `bytes` must have moved on: the stall timeout from now, but no
-/// later than its least speed allows.
-std::chrono::steady_clock::time_point transfer_deadline(const ServerOptions& options,
-                                                        std::chrono::steady_clock::time_point start,
-                                                        std::uint64_t bytes);
 
 /// Serves an accepted connection on its own strand until it ends. With `Shared::tls` it speaks TLS, and nothing else.
 void serve_connection(TcpStream stream, Peer peer, std::shared_ptr<Shared> shared);

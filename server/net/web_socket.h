@@ -6,7 +6,7 @@
 // <utility> before Asio: its 1.74 forgets it.
 #include <boost/asio/awaitable.hpp>
 
-#include "server/net/connection.h"
+#include "server/net/shared.h"
 
 namespace lightwell::net {
 

@@ -127,8 +127,9 @@ void RenderLoop::State::run(const MakePictureSource& make_source, const std::fun
     std::unique_ptr<RenderView> view;
     if (Result<Frame> frame = studio->render(warm_up(), view); !frame)
       throw std::runtime_error("the first picture failed: " + frame.error().message());
-    ready_promise.set_value(studio->source().facts());
-    warm = true;
+    SourceFacts facts = studio->source().facts();
+    warm = true;  // first: who has waited for the facts is not told to wait
+    ready_promise.set_value(std::move(facts));
   } catch (...) {
     ready_promise.set_exception(std::current_exception());
     return;

@@ -41,17 +41,17 @@ std::optional<Problem> Session::apply_input(const protocol::Input& input, Viewer
   return change(input.change, &by, input.seq);
 }
 
-std::optional<Problem> Session::change(const protocol::SessionPatch& patch, const Viewer* by, std::uint32_t seq) {
+std::optional<Problem> Session::change(const protocol::SessionPatch& patch, Viewer* by, std::uint32_t seq) {
   std::lock_guard one_at_a_time(change_mutex_);
   if (ended_) return make_problem(404, "the session has ended");
   protocol::Decoded<SessionState> next = changed(*state(), patch, surroundings_.rules, steady_clock::now());
   if (!next) return next.problem();
-  const std::uint64_t revision = next->revision;
+  if (by) by->input_applied(next->revision, seq);
   {
     std::lock_guard lock(state_mutex_);
     state_ = std::make_shared<const SessionState>(std::move(next).value());
   }
-  audience_.tell_change(members_of(patch), revision, by, seq);
+  audience_.tell_change(members_of(patch), by, seq);
   surroundings_.wake_render_loop();
   return {};
 }
@@ -63,7 +63,7 @@ void Session::end(protocol::CloseCode code, const std::string& reason, bool reco
 }
 
 void Session::scenes_changed() {
-  audience_.tell_change(kChangedScenes, 0, nullptr, 0);
+  audience_.tell_change(kChangedScenes, nullptr, 0);
 }
 
 protocol::StateUpdate Session::change_of(unsigned members) const {

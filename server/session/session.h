@@ -67,7 +67,7 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   void wake_render_loop() override { surroundings_.wake_render_loop(); }
 
  private:
-  std::optional<protocol::Problem> change(const protocol::SessionPatch& patch, const Viewer* by, std::uint32_t seq);
+  std::optional<protocol::Problem> change(const protocol::SessionPatch& patch, Viewer* by, std::uint32_t seq);
   protocol::Welcome welcome(const SessionState& state) const;
   protocol::Role seat(protocol::Role wanted, const Viewer& viewer);
   void resume(const std::string& token);

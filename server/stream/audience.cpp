@@ -50,9 +50,9 @@ void Audience::show(std::shared_ptr<const Picture> picture) {
   for (const auto& viewer : viewers()) viewer->offer(picture);
 }
 
-void Audience::tell_change(unsigned members, std::uint64_t revision, const Viewer* by, std::uint32_t seq) {
+void Audience::tell_change(unsigned members, const Viewer* by, std::uint32_t seq) {
   for (const auto& viewer : viewers())
-    viewer->state_changed(members, revision, viewer.get() == by ? std::optional(seq) : std::nullopt);
+    viewer->state_changed(members, viewer.get() == by ? std::optional(seq) : std::nullopt);
 }
 
 void Audience::report(const protocol::Problem& problem) {

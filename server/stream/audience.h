@@ -25,7 +25,7 @@ class Audience {
   /// Gives everyone a picture, unless a newer one came before.
   void show(std::shared_ptr<const Picture> picture);
   /// `by`: the viewer whose input `seq` it was, or null.
-  void tell_change(unsigned members, std::uint64_t revision, const Viewer* by, std::uint32_t seq);
+  void tell_change(unsigned members, const Viewer* by, std::uint32_t seq);
   void report(const protocol::Problem& problem);
   void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
   /// Ends the stream that was given this token, if it is still there.

@@ -143,13 +143,15 @@ void Viewer::offer(std::shared_ptr<const Picture> picture) {
   if (may_send_picture()) wake();
 }
 
-void Viewer::state_changed(unsigned members, std::uint64_t revision, std::optional<std::uint32_t> seq) {
+void Viewer::input_applied(std::uint64_t revision, std::uint32_t seq) {
   std::lock_guard lock(mutex_);
-  if (seq) {
-    applied_.push_back({revision, *seq});
-    if (applied_.size() > kMostInputs) applied_.pop_front();
-    members &= ~kChangedCamera;  // nobody knows it better than who moved it
-  }
+  applied_.push_back({revision, seq});
+  if (applied_.size() > kMostInputs) applied_.pop_front();
+}
+
+void Viewer::state_changed(unsigned members, std::optional<std::uint32_t> seq) {
+  std::lock_guard lock(mutex_);
+  if (seq) members &= ~kChangedCamera;  // nobody knows it better than who moved it
   members &= ~kChangedSize;
   if (members == 0) return;
   if (seq) changed_by_seq_ = seq;

@@ -53,8 +53,10 @@ class Viewer : public net::WebSocketHandler {
 
   /// A newer picture than any before. Replaces one that waits to be sent.
   void offer(std::shared_ptr<const Picture> picture);
-  /// Members of the session changed, in `revision`; `seq` if an input of this viewer did it.
-  void state_changed(unsigned members, std::uint64_t revision, std::optional<std::uint32_t> seq);
+  /// The input `seq` of this viewer is in pictures of `revision` and later ones. Told before any of them is made.
+  void input_applied(std::uint64_t revision, std::uint32_t seq);
+  /// Members of the session have changed; `seq` if an input of this viewer did it.
+  void state_changed(unsigned members, std::optional<std::uint32_t> seq);
   void report(const protocol::Problem& problem);
   /// Says bye and closes.
   void end(protocol::CloseCode code, const std::string& reason, bool reconnect);

@@ -197,8 +197,10 @@ void measure_latency(int port, bool playing, int moves, Report& report) {
   Viewer viewer(port, playing);
   for (int i = 0; i < 5; ++i) viewer.move_camera();
   std::vector<double> latency_ms, over_render_ms, added_ms;
+  std::pair<double, Viewer::Seen> slowest;
   for (int i = 0; i < moves; ++i) {
     const auto [ms, seen] = viewer.move_camera();
+    if (ms > slowest.first) slowest = {ms, seen};
     latency_ms.push_back(ms);
     over_render_ms.push_back(ms - static_cast<double>(seen.header.render_ms));
     added_ms.push_back(seen.added_ms());
@@ -208,7 +210,10 @@ void measure_latency(int port, bool playing, int moves, Report& report) {
                   {{"ms", median(latency_ms)},
                    {"ms p99", share_below(latency_ms, 0.99)},
                    {"over render ms", median(over_render_ms)},
-                   {"added ms", median(added_ms)}}});
+                   {"added ms", median(added_ms)},
+                   {"slowest: ms", slowest.first},
+                   {"its render ms", static_cast<double>(slowest.second.header.render_ms)},
+                   {"its added ms", slowest.second.added_ms()}}});
 }
 
 double figure(Report& report, const std::string& section, const std::string& name) {

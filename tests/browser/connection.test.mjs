@@ -3,6 +3,9 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { Fixture, kDesktop } from "./fixture.mjs";
 
+const kPatienceMs = 60000;
+const kLongWaitMs = 2500;
+
 const fixture = new Fixture();
 let viewer, page;
 
@@ -19,35 +22,32 @@ test("a page nobody looks at takes no pictures, and goes on when it is looked at
   }, hidden);
   await fixture.pictures_around(() => fixture.setting("Scene").selectOption("helicopters"));
   await hide(true);
-  await page.waitForTimeout(500);
-  const { frame } = await viewer.stage();
-  await page.waitForTimeout(500);
-  assert.ok(Number((await viewer.stage()).frame) <= Number(frame) + 2);
+  const { shown } = await viewer.stage();
+  await page.waitForTimeout(1000);
+  assert.ok(Number((await viewer.stage()).shown) <= Number(shown) + 2, "no more than are on the way");
   await hide(false);
   await viewer.more_frames(5);
 });
 
 test("a cut connection is said, comes back by itself and keeps the session", async () => {
   const { session } = await viewer.stage();
-  const input = await fixture.seq();
+  const { asked } = await viewer.all_answered();
   fixture.line.cut();
   await page.waitForSelector("#banner", { state: "visible" });
   await fixture.keep("desktop-cut");
   await viewer.drag({ x: 500, y: 450 }, { x: 600, y: 470 });  // what is done meanwhile is not lost
-  await page.waitForTimeout(600);
   fixture.line.mend();
-  await page.waitForSelector("#banner", { state: "hidden", timeout: 30000 });
-  await viewer.more_frames(1);
+  await page.waitForSelector("#banner", { state: "hidden", timeout: kPatienceMs });
   assert.equal((await viewer.stage()).session, session);
-  await viewer.until("the answer to the drag", () => fixture.seq(), (value) => value > input);
+  const answered = await viewer.all_answered();
+  assert.ok(Number(answered.asked) > Number(asked), "the drag was asked for");
   assert.equal(await page.getAttribute("#follow-button", "aria-pressed"), "false");
   viewer.errors = viewer.errors.filter((text) => !/ERR_|WebSocket/.test(text));
 });
 
 test("a session that has ended is made anew, with its scene and settings", async () => {
   const { session } = await viewer.stage();
-  await fixture.setting("Samples").fill("4");
-  await viewer.more_frames(1);
+  await fixture.pictures_around(() => fixture.setting("Samples").fill("4"));
   await fetch(fixture.address(`v1/sessions/${session}`), { method: "DELETE" });
   await viewer.until("another session", () => viewer.stage(), (stage) =>
     stage.session !== session && stage.connection === "open");
@@ -60,11 +60,20 @@ test("a session that has ended is made anew, with its scene and settings", async
 test("a long wait for the server can be cut short", async () => {
   const lost = await fixture.open(kDesktop);
   await lost.more_frames(1);
+  await lost.page.evaluate((long_ms) => {  // a long wait does not end by itself any more
+    const { dataset } = document.getElementById("stage");
+    const set_timer = window.setTimeout;
+    window.setTimeout = (act, ms, ...rest) => {
+      const is_endless = dataset.connection === "waiting" && ms >= long_ms;
+      if (is_endless) dataset.waits = "without end";
+      return set_timer(act, is_endless ? 1e9 : ms, ...rest);
+    };
+  }, kLongWaitMs);
   fixture.line.cut();
-  const words = () => lost.page.textContent("#banner-text");
-  await lost.until("a wait of some seconds", words, (text) => /in [4-9] s/.test(text));
+  await lost.until("a long wait", () => lost.stage(), (stage) => stage.waits === "without end");
+  assert.match(await lost.page.textContent("#banner-text"), /Trying again/);
   fixture.line.mend();
-  await lost.page.click("#banner-button");
-  await lost.page.waitForSelector("#banner", { state: "hidden", timeout: 2000 });
+  await lost.page.click("#banner-button", { timeout: kPatienceMs });
+  await lost.page.waitForSelector("#banner", { state: "hidden", timeout: kPatienceMs });
   await lost.context.close();
 });

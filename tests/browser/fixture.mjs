@@ -52,22 +52,21 @@ export class Fixture {
     return page.screenshot({ path: path.join(screenshots, `${name}.png`) });
   }
 
-  async seq() {
-    return Number((await this.viewer.stage()).seq ?? 0);  // none before the first answered input
-  }
-
   /** The panel's control with this label. */
   setting(label) {
     return this.page.getByLabel(label, { exact: true });
   }
 
-  /** Does `act`, waits for the frame that answers it, and gives the picture before and after. */
+  /** Does `act`, waits for a picture that answers it, and gives the picture before and after. */
   async pictures_around(act) {
-    const earlier = await this.viewer.picture();
-    const input = (await this.seq()) + 1;
+    const { viewer } = this;
+    const { asked } = await viewer.all_answered();
+    const earlier = await viewer.picture();
     await act();
-    await this.viewer.until(`the answer to input ${input}`, () => this.seq(), (value) => value >= input);
-    await this.viewer.more_frames(2);
-    return [earlier, await this.viewer.picture()];
+    await viewer.until(`an input after ${asked}`, () => viewer.stage(), (stage) => Number(stage.asked) > Number(asked));
+    const { shown } = await viewer.all_answered();
+    await viewer.until("a finer picture", () => viewer.stage(), (stage) =>
+      stage.final === "true" || Number(stage.shown) >= Number(shown) + 2);
+    return [earlier, await viewer.picture()];
   }
 }

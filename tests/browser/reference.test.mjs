@@ -31,8 +31,7 @@ test("bounces without a limit come and go with the method", async () => {
 test("the final picture is refined by reference, and a drag ends that at once", async () => {
   await page.keyboard.press("Space");
   await viewer.final_picture();
-  const { frame } = await viewer.stage();
-  await viewer.until("pictures by reference", () => viewer.stage(), (stage) => stage.frame > frame && stage.final !== "true");
+  await viewer.until("pictures by reference", () => viewer.stage(), (stage) => stage.final !== "true");
   await viewer.until("the samples to be told", status, (text) => /Refining, \d+ samples/.test(text));
   await fixture.keep("desktop-reference");
   await fixture.pictures_around(() => viewer.drag({ x: 500, y: 450 }, { x: 560, y: 460 }));

@@ -24,8 +24,7 @@ test("the page shows a picture that is not black and moves", async () => {
   const first = await viewer.picture();
   assert.ok(first.mean > 8, `mean brightness ${first.mean}`);
   await viewer.until("the picture to change", () => viewer.picture(), (picture) => difference(first, picture) > 0.3);
-  await page.waitForTimeout(1000);
-  assert.match(await status(), /\d+ fps/);
+  await viewer.until("the rate to be told", status, (text) => /\d+ fps/.test(text));
   assert.equal(await page.isVisible("#curtain"), false);
   assert.equal(await page.isVisible("#banner"), false);
   await fixture.keep("desktop");
@@ -38,9 +37,9 @@ test("space pauses; the picture is refined to its end and then stands still", as
   await viewer.final_picture();
   await viewer.until("the status to say so", status, (text) => /Final/.test(text));
   await fixture.keep("desktop-final");
-  const { frame } = await viewer.stage();
+  const { shown } = await viewer.stage();
   await page.waitForTimeout(700);
-  assert.equal((await viewer.stage()).frame, frame);
+  assert.equal((await viewer.stage()).shown, shown);
 });
 
 test("dragging orbits: the picture changes and frames answer the inputs", async () => {
@@ -159,8 +158,8 @@ test("an address opens its scene and camera, and one that is wrong says so", asy
   assert.equal(await shared.page.getAttribute("#follow-button", "aria-pressed"), "false");
   await shared.context.close();
   const wrong = await fixture.open(kDesktop, "#scene=no-such-scene");
+  await wrong.until("to be told", () => wrong.page.textContent("#toasts"), (text) => /no-such-scene/.test(text));
   await wrong.more_frames(1);
-  assert.match(await wrong.page.textContent("#toasts"), /no-such-scene/);
   await wrong.context.close();
 });
 

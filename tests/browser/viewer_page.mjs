@@ -7,7 +7,7 @@ const kFlags = [
   "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync",
 ];
-const kWithinMs = 30000;
+const kWithinMs = 60000;  // what takes a moment alone takes long beside others
 const kFinalWithinMs = 120000;  // dozens of frames, of a scene whose shaders may be new: no bound on speed, but on patience
 
 export const open_browser = () => chromium.launch({ executablePath: kChromium, args: kFlags });
@@ -27,7 +27,7 @@ export class ViewerPage {
     return viewer;
   }
 
-  /** What the stage says of itself: connection, frame, seq, final, session. */
+  /** What the stage says of itself: connection, session, asked (inputs sent), seq (input answered), shown, final. */
   async stage() {
     return this.page.$eval("#stage", (element) => ({ ...element.dataset }));
   }
@@ -43,10 +43,16 @@ export class ViewerPage {
     }
   }
 
-  /** Waits for `count` more frames than are shown now. */
+  /** Waits until `count` more pictures have been shown than now, over whatever streams. */
   async more_frames(count = 1) {
-    const before = Number((await this.stage()).frame ?? 0);
-    return this.until(`${count} more frames`, () => this.stage(), (stage) => Number(stage.frame) >= before + count);
+    const before = Number((await this.stage()).shown ?? 0);
+    return this.until(`${count} more frames`, () => this.stage(), (stage) => Number(stage.shown) >= before + count);
+  }
+
+  /** Waits until the picture shows all that was asked for. */
+  async all_answered() {
+    return this.until("the answer to all inputs", () => this.stage(), ({ asked, seq, shown }) =>
+      Number(shown) > 0 && seq === asked);
   }
 
   /** Waits for the picture that nothing finer will follow. */

@@ -65,15 +65,16 @@ test("a phone: everything inside the screen, large enough for a finger, turned a
     if (box.id) assert.ok(box.width >= 40 && box.height >= 40, `${box.id} is ${box.width} x ${box.height}`);
   }
   assert.equal(await phone.page.evaluate(() => document.documentElement.scrollWidth), 390);
-  const sent = async () => Number((await phone.stage()).seq);
-  const start = await sent();
+  const answered = async () => Number((await phone.stage()).seq);
+  const { seq: start } = await phone.all_answered();
   await phone.touch([[{ x: 150, y: 400 }, { x: 190, y: 410 }, { x: 240, y: 420 }]]);
-  const turned = await phone.until("an answer to the finger", sent, (value) => value > start);
+  await phone.until("an answer to the finger", answered, (value) => value > Number(start));
+  const { seq: turned } = await phone.all_answered();
   await phone.touch([
     [{ x: 150, y: 400 }, { x: 140, y: 380 }, { x: 120, y: 350 }],
     [{ x: 240, y: 500 }, { x: 255, y: 520 }, { x: 270, y: 550 }],
   ]);
-  await phone.until("an answer to the pinch", sent, (value) => value > turned);
+  await phone.until("an answer to the pinch", answered, (value) => value > Number(turned));
   await fixture.keep("phone-pinched", phone.page);
   await phone.page.tap("#panel-button");
   await phone.more_frames(2);

@@ -124,7 +124,7 @@ TEST(Origins, OnlyItsOwnAndThoseOnTheList) {
 
 TEST(Rates, AreOfATokenOrElseOfAnAddress) {
   AccessOptions options;
-  options.requests_per_second = 1.0;
+  options.requests_per_second = 1e-3;
   options.request_burst = 2.0;
   ASSERT_TRUE(options.tokens.add(kViewToken, Scope::kView));
   AccessControl access(options);

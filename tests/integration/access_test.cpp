@@ -139,13 +139,13 @@ TEST(Cors, IsOffUnlessConfigured) {
 
 TEST(Rates, TooManyRequestsAreToldWhenToComeAgain) {
   ServeOptions options = test_options();
-  options.access.requests_per_second = 0.25;
+  options.access.requests_per_second = 1e-3;
   options.access.request_burst = 3;
   RunningServer server(options, fake_source(std::make_shared<FakeStudio>()));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(ask(server.port(), "GET", "/").status, 200);
   const Answer refused = ask(server.port(), "GET", "/");
   EXPECT_EQ(problem(refused)["status"], 429);
-  EXPECT_EQ(refused.field("Retry-After"), "4");
+  EXPECT_GT(std::stoi(refused.field("Retry-After")), 900);
   EXPECT_EQ(ask(server.port(), "GET", "/healthz").status, 200);  // who looks after the server is not counted
 }
 

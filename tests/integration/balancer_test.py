@@ -1,8 +1,10 @@
 """Three server processes behind Debian's haproxy with the configuration of setup/deploy. Argument: the program's path."""
+import csv
 import json
 import pathlib
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -19,23 +21,21 @@ HAPROXY = shutil.which("haproxy") or "/usr/sbin/haproxy"
 class BalancerTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
-        self.servers = [Server("--drain-delay", "3", "--max-request-rate", "0", data=f"{self.folder.name}/data")
+        self.servers = [Server("--drain-delay", "8", "--max-request-rate", "0", data=f"{self.folder.name}/data")
                         for _ in range(3)]
         for server in self.servers:
             server.wait_until_ready()
         self.proxy_port = free_port()
         text = ROOT.joinpath("setup/deploy/haproxy.cfg").read_text()
         text = text.replace("127.0.0.1:8080", f"127.0.0.1:{self.proxy_port}")
+        self.statistics = f"{self.folder.name}/statistics"
+        text = text.replace("global\n", f"global\n  stats socket {self.statistics}\n")
         for number, server in enumerate(self.servers, 1):
             text = text.replace(f"127.0.0.1:900{number}", f"127.0.0.1:{server.port}")
         configuration = pathlib.Path(self.folder.name, "haproxy.cfg")
         configuration.write_text(text)
         self.proxy = subprocess.Popen([HAPROXY, "-f", configuration], stderr=subprocess.PIPE)
-        deadline = time.monotonic() + 15
-        while self.ask("GET", "/v1/scenes")[0] != 200:
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.1)
-        time.sleep(1.5)  # until all three have been looked after
+        self.wait_until(lambda: self.servers_up() == 3)
 
     def tearDown(self):
         self.proxy.kill()
@@ -45,6 +45,23 @@ class BalancerTest(unittest.TestCase):
             if server.process.poll() is None:
                 server.stop()
         self.folder.cleanup()
+
+    def wait_until(self, condition, seconds=60):
+        deadline = time.monotonic() + seconds
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.1)
+
+    def servers_up(self):
+        """How many servers the balancer has asked, and found well."""
+        try:
+            with socket.socket(socket.AF_UNIX) as line:
+                line.connect(self.statistics)
+                line.sendall(b"show stat\n")
+                rows = line.makefile().read().lstrip("# ").splitlines()
+        except OSError:  # it does not listen yet
+            return 0
+        return sum(row["svname"].startswith("gpu") and row["check_status"] == "L7OK" for row in csv.DictReader(rows))
 
     def ask(self, method, path, body=None):
         """Of whichever server the balancer chooses."""
@@ -97,9 +114,9 @@ class BalancerTest(unittest.TestCase):
             status, _, archive = self.ask("GET", f"/v1/sequences/{each}/archive")
             self.assertEqual((status, archive.count(b"PK\x01\x02")), (200, 25))
         # A session that was on the killed server is gone, and said to be: its client makes another like it.
-        time.sleep(1.5)
+        self.wait_until(lambda: self.servers_up() == 2)
         lost = next(session for session, home in homes.items() if home is victim)
-        self.assertEqual(self.ask("GET", f"/v1/sessions/{lost}")[0], 404)
+        self.wait_until(lambda: self.ask("GET", f"/v1/sessions/{lost}")[0] == 404)
         self.assertEqual(self.ask("POST", "/v1/sessions", small())[0], 201)
 
     def test_a_server_is_drained_without_a_broken_request(self):
@@ -114,10 +131,11 @@ class BalancerTest(unittest.TestCase):
         askers = [threading.Thread(target=keep_asking) for _ in range(4)]
         for asker in askers:
             asker.start()
-        time.sleep(1)
+        self.wait_until(lambda: len(answered) > 10)
         self.servers[2].process.send_signal(signal.SIGTERM)
-        code = self.servers[2].process.wait(timeout=60)
-        time.sleep(1)
+        code = self.servers[2].process.wait(timeout=120)
+        after = len(answered)
+        self.wait_until(lambda: failures or len(answered) > after + 10)
         stop.set()
         for asker in askers:
             asker.join()

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "server/render/picture_source.h"
@@ -16,16 +17,28 @@ namespace lightwell::test {
 /// What the source does and has done; shared with the test, which may look and change at any time.
 struct FakeStudio {
   std::atomic<int> render_ms = 1;
+  std::atomic<bool> held = false;  // a picture that has been begun is finished only when this is over
   std::atomic<bool> failing = false;
   std::atomic<bool> throwing = false;
   std::atomic<bool> losing = false;  // the device: once
   std::atomic<int> sources = 0;      // made
   std::atomic<int> views = 0;        // alive
-  std::atomic<int> pictures = 0;
+  std::atomic<int> begun = 0;        // pictures
+  std::atomic<int> pictures = 0;     // and finished
 
   std::vector<FrameRequest> requests() const {
     std::lock_guard lock(mutex);
     return log;
+  }
+
+  /// Waits until no picture has been made for a while; false if that never comes.
+  bool comes_to_rest() const {
+    int last = -1;
+    for (int i = 0; i < 300; ++i) {
+      if (std::exchange(last, pictures.load()) == pictures) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    return false;
   }
 
   mutable std::mutex mutex;
@@ -42,6 +55,8 @@ class FakeSource : public PictureSource {
 
   Result<Frame> render(const Scene&, const FrameRequest& request, RenderView& render_view) override {
     auto& view = static_cast<View&>(render_view);
+    ++studio_->begun;
+    while (studio_->held) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(studio_->render_ms));
     if (studio_->losing.exchange(false)) return Error{ErrorKind::kDeviceLost, "", "the fake device is lost"};
     if (studio_->throwing) throw std::runtime_error("the fake source was told to throw");

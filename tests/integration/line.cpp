@@ -47,6 +47,12 @@ void Line::shut_down_sending() {
   ::shutdown(socket_, SHUT_WR);
 }
 
+void Line::reset() {
+  const linger at_once{1, 0};
+  ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+  ::close(std::exchange(socket_, -1));
+}
+
 bool Line::receive_some(std::string& into, steady_clock::time_point deadline) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now());
   pollfd ready{socket_, POLLIN, 0};
@@ -96,7 +102,9 @@ std::string Answer::field(std::string_view name) const {
 
 Answer read_answer(Line& line, bool head_only, std::chrono::milliseconds limit) {
   Answer answer;
-  answer.head = line.receive_until("\r\n\r\n", limit);
+  do {
+    answer.head = line.receive_until("\r\n\r\n", limit);
+  } while (answer.head.starts_with("HTTP/1.1 100 "));
   if (!answer.head.starts_with("HTTP/1.1 ") || !answer.head.ends_with("\r\n\r\n")) return answer;
   answer.status = std::stoi(answer.head.substr(9, 3));
   const std::string length = answer.field("Content-Length");

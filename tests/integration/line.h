@@ -4,8 +4,23 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace lightwell::test {
+
+/// With what must come, and soon: as long as a machine at its limits may take.
+inline constexpr std::chrono::seconds kPatience(60);
+
+/// Asks again and again until `condition` holds; false if it never does.
+template <class Condition>
+bool comes_true(const Condition& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
 
 class Line {
  public:
@@ -19,13 +34,16 @@ class Line {
   /// False once the other side has closed.
   bool send(std::string_view bytes);
   /// Up to `limit` for all of it; what came until then, or the end, or `until` was seen.
-  std::string receive_until(std::string_view until, std::chrono::milliseconds limit = std::chrono::seconds(5));
+  std::string receive_until(std::string_view until, std::chrono::milliseconds limit = kPatience);
   /// That many bytes, or what came in time.
-  std::string receive(std::size_t bytes, std::chrono::milliseconds limit = std::chrono::seconds(5));
+  std::string receive(std::size_t bytes, std::chrono::milliseconds limit = kPatience);
   /// Everything until the other side closes. `closed` tells whether it did in time.
-  std::string receive_all(std::chrono::milliseconds limit = std::chrono::seconds(5));
+  std::string receive_all(std::chrono::milliseconds limit = kPatience);
   bool closed() const { return closed_; }
+  /// Closes our side: nothing more is sent, and still read.
   void shut_down_sending();
+  /// Ends the connection by a reset.
+  void reset();
 
  private:
   bool receive_some(std::string& into, std::chrono::steady_clock::time_point deadline);
@@ -44,8 +62,8 @@ struct Answer {
   std::string field(std::string_view name) const;
 };
 
-/// Reads one HTTP response. `head_only`: to a HEAD request.
-Answer read_answer(Line& line, bool head_only = false, std::chrono::milliseconds limit = std::chrono::seconds(30));
+/// Reads one HTTP response, interim ones passed over. `head_only`: to a HEAD request.
+Answer read_answer(Line& line, bool head_only = false, std::chrono::milliseconds limit = kPatience);
 
 /// One request on a line of its own.
 Answer ask(int port, const std::string& method, const std::string& target, const std::string& body = {},

@@ -130,11 +130,12 @@ void ask_for_sequences(Answers& answers) {
   answers["too_many_frames"] = submit({{"last_frame", 20000}});
   answers["keyframes"] = submit({{"keyframes", {{{"path", "/x"}, {"times_s", {1, 1}}, {"values", {1, 2}}}}}});
   asked.ask("DELETE", done);
-  asked.studio->render_ms = 1000;
+  asked.studio->held = true;
   const std::string slow = "/v1/sequences/" + json::parse(submit({{"last_frame", 9}}).body)["id"].get<std::string>();
   answers["not_finished"] = asked.ask("GET", slow + "/frames/9");
   answers["not_done"] = asked.ask("GET", slow + "/archive");
   asked.ask("DELETE", slow);
+  asked.studio->held = false;
   std::filesystem::remove_all(folder);
 }
 
@@ -159,6 +160,7 @@ void ask_for_too_much(Answers& answers) {
 
 void ask_too_often(Answers& answers) {
   ServeOptions options = test_options();
+  options.access.requests_per_second = 1e-3;
   options.access.request_burst = 1;
   Asked asked(options);
   asked.ask("GET", "/");
@@ -184,8 +186,11 @@ void ask_at_the_wrong_time(Answers& answers) {
     started.wait();
     return std::make_unique<FakeSource>(studio);
   };
+  comes_true([&] {  // a server that has just been started; seldom it is so quick that another is needed
+    answers["loading"] = Asked().ask("GET", "/v1/scenes");
+    return answers["loading"].status == 503;
+  });
   Asked asked(test_options(), late_source);
-  answers["loading"] = asked.ask("GET", "/v1/scenes");
   while (asked.ask("GET", "/v1/scenes").status == 503) std::this_thread::sleep_for(milliseconds(5));
   answers["starting"] = asked.render(json::object());
   start.set_value();
@@ -193,17 +198,19 @@ void ask_at_the_wrong_time(Answers& answers) {
 
   studio->render_ms = 50;
   const std::string body = R"({"scene":"cornell","width":8,"height":8,"spp_frames":1000})";
-  const std::string request =
-      "POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
-      std::to_string(body.size()) + "\r\n\r\n" + body;
   std::vector<Line> lines;
-  for (int i = 0; i < 80; ++i) lines.emplace_back(asked.server.port()).send(request);
+  for (int i = 0; i < 80; ++i) lines.emplace_back(asked.server.port()).send(post_text("/v1/render", body));
   // More than can wait: some are refused, whichever of them came last.
-  for (std::size_t i = 0; answers["busy"].status == 0 && i < 50 * lines.size(); ++i)
-    answers["busy"] = read_answer(lines[i % lines.size()], false, milliseconds(2));
-  std::thread drainer([&] { asked.server.drain(milliseconds(500)); });
-  std::this_thread::sleep_for(milliseconds(100));
-  answers["stopping"] = asked.ask("GET", "/v1/scenes");
+  comes_true([&] {
+    return std::any_of(lines.begin(), lines.end(), [&](Line& line) {
+      return (answers["busy"] = read_answer(line, false, milliseconds(2))).status != 0;
+    });
+  });
+  // What was begun takes minutes: until the drain is over, or has given up, late comers are told.
+  std::thread drainer([&] { asked.server.drain(test::kPatience / 2); });
+  while (asked.ask("GET", "/readyz").status != 503) std::this_thread::sleep_for(milliseconds(5));
+  comes_true([&] { return (answers["stopping"] = asked.ask("GET", "/v1/scenes")).status == 503; });
+  lines.clear();
   drainer.join();
 }
 

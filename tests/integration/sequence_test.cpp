@@ -8,8 +8,6 @@
 namespace lightwell::test {
 namespace {
 
-using namespace std::chrono_literals;
-
 const json kSmall{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 4}};
 
 class SequenceTest : public testing::Test {
@@ -32,11 +30,8 @@ class SequenceTest : public testing::Test {
     }
     json get(const std::string& id) const { return json::parse(ask("GET", "/v1/sequences/" + id).body); }
     json until_done(const std::string& id) const {
-      json sequence = get(id);
-      for (int i = 0; i < 1000 && sequence["state"] != "done" && sequence["state"] != "failed"; ++i) {
-        std::this_thread::sleep_for(10ms);
-        sequence = get(id);
-      }
+      json sequence;
+      comes_true([&] { return (sequence = get(id))["state"] == "done" || sequence["state"] == "failed"; });
       return sequence;
     }
   };
@@ -49,8 +44,7 @@ class SequenceTest : public testing::Test {
     options.access.requests_per_second = 0;
     options.limits.max_sequence_frames = 100;
     running.server = std::make_unique<RunningServer>(options, fake_source(running.studio));
-    running.server->ready().wait();
-    while (running.ask("GET", "/v1/scenes").status != 200) std::this_thread::sleep_for(5ms);
+    wait_until_ready(*running.server);
     return running;
   }
 
@@ -117,26 +111,26 @@ TEST_F(SequenceTest, AnotherSceneOfTheSameNameIsAnotherSequence) {
 TEST_F(SequenceTest, GoesOnAfterARestartAndRendersNoFinishedFrameAgain) {
   json request = kSmall;
   request["scene"] = "mine";  // an upload, which the second server was never given
-  request["last_frame"] = 19;
+  request["last_frame"] = 99;
   std::string id;
   int done_before = 0;
   std::shared_ptr<FakeStudio> first_studio;
   {
-    const Running server = start(10);
+    const Running server = start(30);
     first_studio = server.studio;
     EXPECT_EQ(ask(server.server->port(), "PUT", "/v1/scenes/mine", triangle_glb(), "model/gltf-binary").status, 201);
     id = server.submit(request);
-    for (int i = 0; i < 500 && server.get(id)["frames_done"] < 5; ++i) std::this_thread::sleep_for(5ms);
+    EXPECT_TRUE(comes_true([&] { return server.get(id)["frames_done"] >= 5; }));
     done_before = server.get(id)["frames_done"];
   }
   EXPECT_GE(done_before, 5);
-  EXPECT_LT(done_before, 20);
+  EXPECT_LT(done_before, 100);
   const Running server = start();
   const json done = server.until_done(id);
   ASSERT_EQ(done["state"], "done") << done;
-  EXPECT_EQ(done["frames_done"], 20);
-  EXPECT_LE(server.studio->pictures, 1 + 20 - done_before);  // and one to warm up
-  EXPECT_GE(first_studio->pictures + server.studio->pictures, 2 + 20);
+  EXPECT_EQ(done["frames_done"], 100);
+  EXPECT_LE(server.studio->pictures, 1 + 100 - done_before);  // and one to warm up
+  EXPECT_GE(first_studio->pictures + server.studio->pictures, 2 + 100);
 }
 
 TEST_F(SequenceTest, ServersThatShareAFolderShareTheWork) {
@@ -144,6 +138,10 @@ TEST_F(SequenceTest, ServersThatShareAFolderShareTheWork) {
   json request = kSmall;
   request["last_frame"] = 39;
   const std::string id = first.submit(request);
+  EXPECT_TRUE(comes_true([&] { return first.studio->pictures > 6; }));
+  first.studio->held = true;  // until the other has done its part
+  EXPECT_TRUE(comes_true([&] { return second.studio->pictures > 6; }));
+  first.studio->held = false;
   EXPECT_EQ(second.until_done(id)["state"], "done");
   EXPECT_GT(first.studio->pictures, 5);
   EXPECT_GT(second.studio->pictures, 5);
@@ -158,13 +156,11 @@ TEST_F(SequenceTest, IsCancelledTakenUpAgainAndForgotten) {
   request["last_frame"] = 99;
   const std::string id = server.submit(request);
   const std::string path = "/v1/sequences/" + id;
-  for (int i = 0; i < 500 && server.get(id)["frames_done"] < 2; ++i) std::this_thread::sleep_for(5ms);
+  EXPECT_TRUE(comes_true([&] { return server.get(id)["frames_done"] >= 2; }));
   const Answer cancelled = server.ask("POST", path + "/cancel");
   EXPECT_EQ(json::parse(cancelled.body)["state"], "cancelled") << cancelled.body;
-  std::this_thread::sleep_for(100ms);
-  const int pictures = server.studio->pictures;
-  std::this_thread::sleep_for(200ms);
-  EXPECT_EQ(server.studio->pictures, pictures);
+  EXPECT_TRUE(server.studio->comes_to_rest());
+  EXPECT_LT(server.studio->pictures, 100);
   EXPECT_EQ(problem(server.ask("GET", path + "/archive"))["status"], 409);
   EXPECT_EQ(problem(server.ask("GET", path + "/frames/99"))["status"], 409);
   EXPECT_EQ(problem(server.ask("GET", path + "/frames/100"))["status"], 404);
@@ -180,12 +176,15 @@ TEST_F(SequenceTest, IsCancelledTakenUpAgainAndForgotten) {
 
 TEST_F(SequenceTest, TellsItsProgressAsEvents) {
   const Running server = start(20);
+  server.studio->held = true;
   const std::string id = server.submit(kSmall);
   Line line(server.server->port());
   line.send("GET /v1/sequences/" + id + "/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_NE(line.receive_until("\r\n\r\n").find("text/event-stream"), std::string::npos);
-  const std::string events = line.receive_until("\r\n0\r\n\r\n", 10s);
-  EXPECT_NE(events.find("event: running\ndata: {"), std::string::npos) << events;
+  const std::string first = line.receive_until("\n\n");
+  EXPECT_NE(first.find("event: running\ndata: {"), std::string::npos) << first;
+  server.studio->held = false;
+  const std::string events = line.receive_until("\r\n0\r\n\r\n");
   EXPECT_NE(events.find("event: done\ndata: {"), std::string::npos) << events;
   EXPECT_NE(events.find("\"frames_done\":5"), std::string::npos) << events;
   line.send("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
@@ -258,7 +257,7 @@ TEST_F(SequenceTest, FailsWithTheReasonAndMayBeTriedAgain) {
 
 TEST(Sequences, NeedAFolder) {
   RunningServer server(test_options(), fake_source(std::make_shared<FakeStudio>()));
-  while (ask(server.port(), "GET", "/v1/scenes").status != 200) std::this_thread::sleep_for(5ms);
+  wait_until_ready(server);
   EXPECT_EQ(problem(ask(server.port(), "GET", "/v1/sequences"))["status"], 503);
 }
 

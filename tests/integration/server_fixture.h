@@ -19,18 +19,31 @@ inline ServeOptions test_options() {
   options.scene = "builtin:cornell";
   options.port = 0;
   options.reference_after_s = 0.0;  // a final picture stays
+  options.access.requests_per_second = 0;  // tests ask often
   options.limits.max_upload_bytes = 4u << 20;
   options.limits.max_sessions = 8;
   options.limits.max_scenes = 3;
   return options;
 }
 
+/// Waits until pictures of all scenes can be asked for.
+inline void wait_until_ready(const RunningServer& server) {
+  server.ready().wait();
+  while (ask(server.port(), "GET", "/v1/scenes").status != 200)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+/// A request as it goes over the line.
+inline std::string post_text(const std::string& path, const std::string& body) {
+  return "POST " + path + " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: " +
+         std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
 class ServerTest : public testing::Test {
  protected:
   explicit ServerTest(const ServeOptions& options = test_options())
       : studio_(std::make_shared<FakeStudio>()), server_(options, fake_source(studio_)) {
-    server_.ready().wait();
-    while (ask("GET", "/v1/scenes").status != 200) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    wait_until_ready(server_);
   }
 
   Answer ask(const std::string& method, const std::string& target, const std::string& body = {},
@@ -51,6 +64,13 @@ class ServerTest : public testing::Test {
     const Answer answer = ask("POST", "/v1/sessions", more);
     EXPECT_EQ(answer.status, 201) << answer.body;
     return json::parse(answer.body).value("id", "");
+  }
+
+  /// A number that /metrics tells; -1 if it does not.
+  double metric(const std::string& name) const {
+    const std::string text = ask("GET", "/metrics").body;
+    const auto at = text.find("\n" + name + " ");
+    return at == std::string::npos ? -1.0 : std::stod(text.substr(at + name.size() + 2));
   }
 
   std::shared_ptr<FakeStudio> studio_;
@@ -102,7 +122,7 @@ class StreamClient {
     send({{"type", "ack"}, {"frame", frame}, {"received_ms", 0}, {"decoded_ms", 0}, {"shown_ms", 0}, {"queue", 0}});
   }
 
-  std::optional<Heard> next(std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+  std::optional<Heard> next(std::chrono::milliseconds limit = kPatience) {
     const auto message = socket_.receive(limit);
     if (!message) return {};
     Heard heard;
@@ -120,7 +140,7 @@ class StreamClient {
   }
 
   /// The next text message of a type; null if none came in time. Frames and other messages on the way are passed over.
-  json next_text(const std::string& type, std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+  json next_text(const std::string& type, std::chrono::milliseconds limit = kPatience) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (auto heard = next(remaining(deadline)))
       if (heard->text.is_object() && heard->text.value("type", "") == type) return heard->text;
@@ -128,7 +148,7 @@ class StreamClient {
   }
 
   /// The next frame, text messages passed over.
-  std::optional<protocol::FrameHeader> next_frame(std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+  std::optional<protocol::FrameHeader> next_frame(std::chrono::milliseconds limit = kPatience) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (auto heard = next(remaining(deadline)))
       if (heard->frame) return heard->frame;
@@ -137,8 +157,7 @@ class StreamClient {
 
   /// Acknowledges every frame until one satisfies `enough`.
   template <class Enough>
-  std::optional<protocol::FrameHeader> frame_where(const Enough& enough,
-                                                   std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+  std::optional<protocol::FrameHeader> frame_where(const Enough& enough, std::chrono::milliseconds limit = kPatience) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (auto frame = next_frame(remaining(deadline))) {
       ack(frame->frame);
@@ -148,7 +167,7 @@ class StreamClient {
   }
 
   /// The code it closes with; what comes before is passed over.
-  int close_code(std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+  int close_code(std::chrono::milliseconds limit = kPatience) {
     const auto deadline = std::chrono::steady_clock::now() + limit;
     while (socket_.close_code() == 0 && std::chrono::steady_clock::now() < deadline) next(remaining(deadline));
     return socket_.close_code();

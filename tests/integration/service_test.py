@@ -63,6 +63,18 @@ class Server:
             time.sleep(0.05)
         return self
 
+    def wait_until(self, condition, seconds=60):
+        deadline = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > deadline:
+                raise AssertionError(f"it never came: {self.log_text()}")
+            time.sleep(0.05)
+
+    def metric(self, name):
+        """A number that /metrics tells."""
+        lines = self.ask("GET", "/metrics")[2].decode().splitlines()
+        return next(float(line.split()[1]) for line in lines if line.startswith(name + " "))
+
     def log_text(self):
         self.log.seek(0)
         return self.log.read().decode()
@@ -72,7 +84,7 @@ class Server:
 
     def stop(self, how=signal.SIGKILL):
         self.process.send_signal(how)
-        code = self.process.wait(timeout=30)
+        code = self.process.wait(timeout=60)
         return code
 
 
@@ -139,25 +151,24 @@ class TlsTest(unittest.TestCase):
 
 class SignalTest(unittest.TestCase):
     def test_sigterm_drains(self):
-        server = Server("--drain-delay", "1").wait_until_ready()
+        server = Server("--drain-delay", "5").wait_until_ready()
         slow = subprocess.Popen(["curl", "--silent", "--output", "/dev/null", "--write-out", "%{http_code}", "--json",
                                  json.dumps(small(spp_frames=150)), f"{server.url}/v1/render"], stdout=subprocess.PIPE)
-        time.sleep(0.3)
+        server.wait_until(lambda: server.metric("lightwell_renders_waiting") == 1)
         server.process.send_signal(signal.SIGTERM)
-        time.sleep(0.3)
-        self.assertEqual(server.ask("GET", "/readyz")[0], 503)   # a balancer sends nobody more
+        server.wait_until(lambda: server.ask("GET", "/readyz")[0] == 503)  # a balancer sends nobody more
         self.assertEqual(server.ask("GET", "/v1/scenes")[0], 200)  # and who comes still is served
         self.assertEqual(slow.communicate(timeout=60)[0], b"200")
-        self.assertEqual(server.process.wait(timeout=30), 0)
+        self.assertEqual(server.process.wait(timeout=60), 0)
         events = [event["event"] for event in server.log_events() if event["event"] != "request"]
         self.assertEqual([events[0], *events[-2:]], ["starting", "stopping", "stopped"])
 
     def test_a_second_signal_ends_it_at_once(self):
         server = Server("--drain-delay", "60").wait_until_ready()
         server.process.send_signal(signal.SIGTERM)
-        time.sleep(0.3)
+        server.wait_until(lambda: server.ask("GET", "/readyz")[0] == 503)
         server.process.send_signal(signal.SIGTERM)
-        self.assertEqual(server.process.wait(timeout=5), -signal.SIGTERM)
+        self.assertEqual(server.process.wait(timeout=30), -signal.SIGTERM)
 
 
 class RestartTest(unittest.TestCase):

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "tests/integration/line.h"
+
 namespace lightwell::test {
 
 struct Message {
@@ -37,7 +39,7 @@ class WebSocketClient {
   void send_raw(const std::string& bytes);
 
   /// None when nothing came in time, or the other side has closed.
-  std::optional<Message> receive(std::chrono::milliseconds limit = std::chrono::seconds(10));
+  std::optional<Message> receive(std::chrono::milliseconds limit = kPatience);
   /// The other side's close code; 0 while open, 1006 if it went without one.
   int close_code() const;
   std::string close_reason() const;

@@ -1,0 +1,76 @@
+// How the render thread shares its time out among those it renders for.
+#include "server/render/render_loop.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/integration/fake_source.h"
+#include "tests/integration/line.h"
+
+namespace lightwell::test {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// Wants pictures without end. Knows how much time its pictures took.
+class Greedy : public Subject {
+ public:
+  /// Takes the device for `extra_ms` more than a picture of the source does.
+  explicit Greedy(int extra_ms) : extra_(extra_ms), scene_(std::make_shared<const Scene>()) {}
+
+  SteadyTime due_at(SteadyTime now) override { return now; }
+  Result<Shot> take_shot(SteadyTime now) override {
+    start_ = now;
+    std::this_thread::sleep_for(extra_);
+    Shot shot;
+    shot.scene = scene_;
+    shot.request.size_px = {1, 1};
+    return shot;
+  }
+  void shot_done(Result<Frame>) override {
+    const std::chrono::duration<double> took = steady_clock::now() - start_;
+    longest_s = std::max(longest_s.load(), took.count());
+    used_s = used_s + took.count();
+  }
+  bool ended() const override { return false; }
+
+  std::atomic<double> used_s = 0.0, longest_s = 0.0;
+
+ private:
+  const std::chrono::milliseconds extra_;
+  const std::shared_ptr<const Scene> scene_;
+  SteadyTime start_{};
+};
+
+TEST(RenderLoop, GivesEverySessionItsShareAndAllRequestsOneTogether) {
+  const auto studio = std::make_shared<FakeStudio>();
+  RenderLoop loop(
+      fake_source(studio),
+      [] {
+        Shot shot;
+        shot.scene = std::make_shared<const Scene>();
+        shot.request.size_px = {1, 1};
+        return shot;
+      },
+      [](Share, const Result<Frame>&, double) {});
+  loop.ready().wait();
+  const auto light = std::make_shared<Greedy>(0), heavy = std::make_shared<Greedy>(15);
+  std::vector<std::shared_ptr<Greedy>> requests;
+  for (int i = 0; i < 3; ++i) requests.push_back(std::make_shared<Greedy>(5));
+  loop.add(light, Share::kOwn);
+  loop.add(heavy, Share::kOwn);
+  for (const auto& request : requests) loop.add(request, Share::kJobs);
+  EXPECT_TRUE(comes_true([&] { return light->used_s + heavy->used_s > 1.0; }));
+  loop.stop();
+
+  double of_requests_s = 0.0, longest_s = std::max(light->longest_s.load(), heavy->longest_s.load());
+  for (const auto& request : requests) {
+    of_requests_s += request->used_s;
+    longest_s = std::max(longest_s, request->longest_s.load());
+  }
+  // Who has had least goes first: nobody is ever further ahead than by one picture, whatever else the machine does.
+  EXPECT_LE(std::abs(light->used_s - heavy->used_s), 2.0 * longest_s);
+  EXPECT_LE(std::abs(light->used_s - of_requests_s), 2.0 * longest_s);
+}
+
+}  // namespace
+}  // namespace lightwell::test
