@@ -18,7 +18,7 @@ inline ServeOptions test_options() {
   ServeOptions options;
   options.scene = "builtin:cornell";
   options.port = 0;
-  options.reference_after_s = 0.0;  // a final picture stays
+  options.reference_after_s = 0.0;         // a final picture stays
   options.access.requests_per_second = 0;  // tests ask often
   options.limits.max_upload_bytes = 4u << 20;
   options.limits.max_sessions = 8;
