@@ -57,6 +57,13 @@ struct SettingsSpec {
   std::optional<std::int32_t> indirect_size;  // pixels, 1 or more
   std::optional<std::string> estimator;
   std::optional<std::string> view;
+  std::optional<std::int32_t> view_index;       // 0 or more
+  std::optional<std::int32_t> patch;            // pixels of the indirect map, 1 or more
+  std::optional<std::int32_t> triangle_groups;  // 1 or more
+  std::optional<double> normal_threshold;       // a cosine
+  std::optional<double> depth_threshold;        // a share, 0 or more
+  std::optional<std::string> similarity;
+  std::optional<bool> trace_missed;
   std::optional<std::optional<double>> exposure_ev;  // null: automatic
   std::optional<std::string> tone_map;
   std::optional<std::uint32_t> seed;

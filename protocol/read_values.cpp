@@ -106,6 +106,13 @@ void read_settings(const Value& value, SettingsSpec& out) {
   object.optional("indirect_size", settings.indirect_size, at_least_one);
   object.optional("estimator", settings.estimator, read_token);
   object.optional("view", settings.view, read_token);
+  object.optional("view_index", settings.view_index, ReadInteger<std::int32_t>{0, 0x7fffffff});
+  object.optional("patch", settings.patch, at_least_one);
+  object.optional("triangle_groups", settings.triangle_groups, at_least_one);
+  object.optional("normal_threshold", settings.normal_threshold, ReadNumber{-1, 1});
+  object.optional("depth_threshold", settings.depth_threshold, ReadNumber{0, 10});
+  object.optional("similarity", settings.similarity, read_token);
+  object.optional("trace_missed", settings.trace_missed, read_boolean);
   object.optional("exposure_ev", settings.exposure_ev, ReadNullable{ReadNumber{-64, 64}});
   object.optional("tone_map", settings.tone_map, read_token);
   object.optional("seed", settings.seed, ReadInteger<std::uint32_t>{0, 0xffffffff});

@@ -187,6 +187,13 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "indirect_size", settings.indirect_size);
   give(object, "estimator", settings.estimator);
   give(object, "view", settings.view);
+  give(object, "view_index", settings.view_index);
+  give(object, "patch", settings.patch);
+  give(object, "triangle_groups", settings.triangle_groups);
+  give(object, "normal_threshold", settings.normal_threshold);
+  give(object, "depth_threshold", settings.depth_threshold);
+  give(object, "similarity", settings.similarity);
+  give(object, "trace_missed", settings.trace_missed);
   give(object, "exposure_ev", settings.exposure_ev,
        [](const std::optional<double>& ev) { return ev ? number(*ev) : Json(nullptr); });
   give(object, "tone_map", settings.tone_map);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,27 @@ enum class Method { kThesis, kRealtime, kReference };
 enum class Estimator { kCorrected, kLiteral };
 /// isSimilar of the thesis: depths that differ by less than the threshold, or by more, as it is printed.
 enum class Similarity { kCorrected, kLiteral };
-enum class ViewKind { kFinal, kDirect, kIndirect, kAlbedo, kNormal, kDepth, kOcclusionDistance };
+/// Light: the picture, its parts, one bounce alone. Surfaces: albedo to normal-depth. The rest is of the indirect map's
+/// pixels: mean distance of the hits, one direction and its hit's distance, the patch, to which patch the pixel refers,
+/// how many candidates it has, and whether it refers to none. Values are VIEW_* in passes/bindings.glsl.
+enum class ViewKind {
+  kFinal,
+  kDirect,
+  kIndirect,
+  kAlbedo,
+  kNormal,
+  kDepth,
+  kOcclusionDistance,
+  kPosition,
+  kNormalDepth,
+  kBounce,
+  kDirection,
+  kHitDistance,
+  kPatch,
+  kReference,
+  kCandidates,
+  kUnmatched
+};
 enum class ToneMap { kNeutral, kLinear };
 /// How `reference` finds lights that have a size: samples of the lights and rays that hit them, weighted together, or
 /// one of the two alone. All have the same mean.
@@ -46,6 +67,9 @@ std::string_view name_of(ViewKind view);
 std::string_view name_of(ToneMap tone_map);
 std::string_view name_of(LightStrategy strategy);
 
+/// All views, in the order of their values.
+std::span<const ViewKind> all_view_kinds();
+
 /// How a picture is made. Ranges are checked by `check_settings`. `reference` makes one path per pixel and frame and
 /// knows method, bounces, light_strategy, seed and what is displayed; its views of surfaces are those of `thesis`.
 struct Settings {
@@ -62,6 +86,7 @@ struct Settings {
       true;  // a pixel that none of its candidates lies before traces that ray itself (not in the thesis)
   Estimator estimator = Estimator::kCorrected;
   ViewKind view = ViewKind::kFinal;
+  int view_index = 0;                // which direction (from 0) or bounce (from 1) the views of one of them show
   std::optional<float> exposure_ev;  // fixed exposure (linear scale 2^ev); none: median luminance, smoothed in time
   ToneMap tone_map = ToneMap::kNeutral;
   std::uint32_t seed = 0;

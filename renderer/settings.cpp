@@ -19,13 +19,22 @@ constexpr Names<Method, 3> kMethods = {
 constexpr Names<Estimator, 2> kEstimators = {{{Estimator::kCorrected, "corrected"}, {Estimator::kLiteral, "literal"}}};
 constexpr Names<Similarity, 2> kSimilarities = {
     {{Similarity::kCorrected, "corrected"}, {Similarity::kLiteral, "literal"}}};
-constexpr Names<ViewKind, 7> kViews = {{{ViewKind::kFinal, "final"},
-                                        {ViewKind::kDirect, "direct"},
-                                        {ViewKind::kIndirect, "indirect"},
-                                        {ViewKind::kAlbedo, "albedo"},
-                                        {ViewKind::kNormal, "normal"},
-                                        {ViewKind::kDepth, "depth"},
-                                        {ViewKind::kOcclusionDistance, "occlusion-distance"}}};
+constexpr Names<ViewKind, 16> kViews = {{{ViewKind::kFinal, "final"},
+                                         {ViewKind::kDirect, "direct"},
+                                         {ViewKind::kIndirect, "indirect"},
+                                         {ViewKind::kAlbedo, "albedo"},
+                                         {ViewKind::kNormal, "normal"},
+                                         {ViewKind::kDepth, "depth"},
+                                         {ViewKind::kOcclusionDistance, "occlusion-distance"},
+                                         {ViewKind::kPosition, "position"},
+                                         {ViewKind::kNormalDepth, "normal-depth"},
+                                         {ViewKind::kBounce, "bounce"},
+                                         {ViewKind::kDirection, "direction"},
+                                         {ViewKind::kHitDistance, "hit-distance"},
+                                         {ViewKind::kPatch, "patch"},
+                                         {ViewKind::kReference, "reference-map"},
+                                         {ViewKind::kCandidates, "candidates"},
+                                         {ViewKind::kUnmatched, "unmatched"}}};
 constexpr Names<LightStrategy, 3> kLightStrategies = {
     {{LightStrategy::kBoth, "both"}, {LightStrategy::kLights, "lights"}, {LightStrategy::kRays, "rays"}}};
 constexpr Names<ToneMap, 2> kToneMaps = {{{ToneMap::kNeutral, "neutral"}, {ToneMap::kLinear, "linear"}}};
@@ -52,6 +61,14 @@ Status check_range(const char* name, int value, int least, int most) {
 
 }  // namespace
 
+std::span<const ViewKind> all_view_kinds() {
+  static const auto kinds = [] {
+    std::array<ViewKind, kViews.size()> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = kViews[i].first;
+    return all;
+  }();
+  return kinds;
+}
 std::optional<Method> method_from_name(std::string_view name) {
   return from_name(kMethods, name);
 }
@@ -104,6 +121,19 @@ Status check_patches(const Settings& settings, glm::ivec2 size_px) {
   return check_range("triangle-groups", settings.triangle_groups, 1, 64);
 }
 
+// What the view is of.
+Status check_view(const Settings& settings) {
+  if (settings.view == ViewKind::kBounce && (settings.view_index < 1 || settings.view_index > settings.bounces))
+    return invalid_input("view-index", "there is no bounce " + std::to_string(settings.view_index) + " of " +
+                                           std::to_string(settings.bounces));
+  const bool of_direction = settings.view == ViewKind::kDirection || settings.view == ViewKind::kHitDistance ||
+                            settings.view == ViewKind::kCandidates;
+  if (of_direction && settings.view_index >= settings.samples)
+    return invalid_input("view-index", "there is no direction " + std::to_string(settings.view_index) + " among " +
+                                           std::to_string(settings.samples) + " from 0 on");
+  return check_range("view-index", settings.view_index, 0, 4095);
+}
+
 Status check_settings(const Settings& settings, glm::ivec2 size_px) {
   const bool unlimited = settings.bounces == kUnlimitedBounces;
   if (unlimited && settings.method != Method::kReference)
@@ -115,7 +145,8 @@ Status check_settings(const Settings& settings, glm::ivec2 size_px) {
                            check_range("indirect-size", settings.indirect_size, 8, 4096),
                            check_range("shadow-size", settings.shadow_size, 64, 4096),
                            check_range("shadow-filter", settings.shadow_filter, 1, 15),
-                           check_patches(settings, size_px)};
+                           check_patches(settings, size_px),
+                           check_view(settings)};
   for (const Status& check : checks)
     if (!check) return check;
   if (settings.shadow_filter % 2 == 0)

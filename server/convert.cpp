@@ -25,6 +25,13 @@ class SettingsReader {
     read_name("estimator", spec.estimator, estimator_from_name, settings_.estimator);
     read_name("view", spec.view, view_kind_from_name, settings_.view);
     read_name("tone_map", spec.tone_map, tone_map_from_name, settings_.tone_map);
+    read_name("similarity", spec.similarity, similarity_from_name, settings_.similarity);
+    read_value(spec.view_index, settings_.view_index);
+    read_value(spec.patch, settings_.patch);
+    read_value(spec.triangle_groups, settings_.triangle_groups);
+    read_value(spec.normal_threshold, settings_.normal_threshold);
+    read_value(spec.depth_threshold, settings_.depth_threshold);
+    read_value(spec.trace_missed, settings_.trace_missed);
     read_value(spec.samples, settings_.samples);
     read_bounces(spec.bounces);
     read_value(spec.indirect_size, settings_.indirect_size);
@@ -66,9 +73,9 @@ class SettingsReader {
       settings_.bounces = *bounces == protocol::kEndlessBounces ? kUnlimitedBounces : *bounces;
   }
 
-  template <class T>
-  static void read_value(const std::optional<T>& given, T& out) {
-    if (given) out = *given;
+  template <class T, class Out>
+  static void read_value(const std::optional<T>& given, Out& out) {
+    if (given) out = static_cast<Out>(*given);
   }
 
   Settings settings_;
@@ -118,6 +125,13 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.indirect_size = settings.indirect_size;
   spec.estimator = name_of(settings.estimator);
   spec.view = name_of(settings.view);
+  spec.view_index = settings.view_index;
+  spec.patch = settings.patch;
+  spec.triangle_groups = settings.triangle_groups;
+  spec.normal_threshold = settings.normal_threshold;
+  spec.depth_threshold = settings.depth_threshold;
+  spec.similarity = name_of(settings.similarity);
+  spec.trace_missed = settings.trace_missed;
   spec.exposure_ev.emplace();
   if (settings.exposure_ev) spec.exposure_ev->emplace(*settings.exposure_ev);
   spec.tone_map = name_of(settings.tone_map);

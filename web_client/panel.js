@@ -10,8 +10,14 @@ const kShadowSizes = [128, 256, 512, 1024, 2048, 4096];
 const kMethodNames = { thesis: "Thesis", realtime: "Realtime", reference: "Reference" };
 const kViews = [
   ["final", "Final picture"], ["direct", "Direct light"], ["indirect", "Indirect light"], ["albedo", "Albedo"],
-  ["normal", "Normals"], ["depth", "Depth"], ["occlusion-distance", "Distance of hits"],
+  ["normal", "Normals"], ["depth", "Depth"], ["position", "Position"], ["normal-depth", "Normal and depth"],
+  ["occlusion-distance", "Mean distance of hits"], ["bounce", "One bounce"], ["direction", "One direction"],
+  ["hit-distance", "Its distance to the hit"], ["candidates", "Its candidates"], ["patch", "Patches and seeds"],
+  ["reference-map", "Reference map"], ["unmatched", "Unmatched pixels"],
 ];
+const kDirectionViews = ["direction", "hit-distance", "candidates"];
+const kPatches = [1, 2, 4, 8, 16];
+const kTriangleGroups = [1, 2, 4, 8, 16, 32, 64];
 const kOwnCamera = "own";
 // The last step of the bounces' slider stands for "inf", which the method reference alone knows.
 const kMostBounces = 8, kEndless = kMostBounces + 1;
@@ -51,7 +57,11 @@ export class Panel {
 
   /** A control bound to one of the renderer's settings. */
   setting(name, make_control, options) {
-    const tell = (value, at_ms) => this.owner.push({ settings: { [name]: value } }, at_ms);
+    const tell = (value, at_ms) => {
+      // Bounces are counted from 1, directions from 0, and another view may have fewer.
+      const first = name === "view" ? { view_index: value === "bounce" ? 1 : 0 } : {};
+      this.owner.push({ settings: { [name]: value, ...first } }, at_ms);
+    };
     const control = make_control({ ...options, on_input: tell, on_change: tell });
     this.keep(["settings"], (model) => name in model.settings && control.set(model.settings[name]));
     return control;
@@ -85,6 +95,13 @@ export class Panel {
   picture_rows() {
     const { owner } = this;
     const view = this.setting("view", make_choice, { label: "Show", options: kViews });
+    const view_index = this.setting("view_index", make_slider, { label: "Which", min: 0, max: 4095, step: 1 });
+    this.keep(["settings"], ({ settings }) => {
+      const is_bounce = settings.view === "bounce";
+      view_index.row.hidden = !is_bounce && !kDirectionViews.includes(settings.view);
+      view_index.limit(is_bounce ? settings.bounces : settings.samples - 1);
+      view_index.set(settings.view_index);
+    });
     const size = make_choice({
       label: "Size", options: kPictureSizes, hint: "Pixels the server renders; the picture is scaled to the window",
       on_change: (choice) => owner.set_picture_size(choice),
@@ -108,7 +125,7 @@ export class Panel {
     const tone = this.setting("tone_map", make_choice, {
       label: "Tone curve", options: [["neutral", "Neutral"], ["linear", "Linear"]],
     });
-    return [view.row, size.row, automatic.row, exposure.row, tone.row];
+    return [view.row, view_index.row, size.row, automatic.row, exposure.row, tone.row];
   }
 
   transport_rows() {
@@ -161,6 +178,28 @@ export class Panel {
       label: "Estimator", options: [["corrected", "Corrected"], ["literal", "Literal"]],
       hint: "Literal follows the published formula to the letter",
     });
+    const patch = this.setting("patch", make_slider, {
+      label: "Patch", values: kPatches, format: (value) => (Number(value) === 1 ? "Off" : `${value} × ${value}`),
+      hint: "Pixels of the indirect map that share directions and candidates",
+    });
+    const triangle_groups = this.setting("triangle_groups", make_slider, {
+      label: "Triangle groups", values: kTriangleGroups, hint: "The nearest triangle of each is a patch's candidate",
+    });
+    const normal_threshold = this.setting("normal_threshold", make_slider, {
+      label: "Normals agree", min: 0, max: 1, step: 0.01, format: (cosine) => `≥ ${Number(cosine).toFixed(2)}`,
+      hint: "Least cosine between the normals of similar pixels",
+    });
+    const depth_threshold = this.setting("depth_threshold", make_slider, {
+      label: "Depths agree", min: 0, max: 0.5, step: 0.01, format: (share) => `${Math.round(100 * share)} %`,
+      hint: "Greatest difference between the depths of similar pixels",
+    });
+    const similarity = this.setting("similarity", make_choice, {
+      label: "Similarity", options: [["corrected", "Corrected"], ["literal", "Literal"]],
+      hint: "Literal asks for depths that differ, as the formula is printed",
+    });
+    const trace_missed = this.setting("trace_missed", make_toggle, {
+      label: "Trace missed rays", hint: "Where no candidate of the patch lies before a pixel, its ray is traced",
+    });
     const shadow_size = this.setting("shadow_size", make_slider, {
       label: "Shadow map", values: kShadowSizes, format: (value) => `${value} px`,
     });
@@ -169,7 +208,8 @@ export class Panel {
     });
     const reset = make_wide_button("Reset all settings");
     reset.addEventListener("click", () => this.owner.push({ settings: this.model.default_settings ?? {} }));
-    return [estimator.row, shadow_size.row, shadow_filter.row, reset];
+    return [estimator.row, patch.row, triangle_groups.row, normal_threshold.row, depth_threshold.row, similarity.row,
+      trace_missed.row, shadow_size.row, shadow_filter.row, reset];
   }
 }
 

@@ -51,6 +51,7 @@ ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       gather_pass_(shaders),
       filter_pass_(shaders),
       add_maps_pass_(shaders),
+      map_view_pass_(shaders),
       compose_pass_(shaders),
       occlusion_(buffers),
       candidates_("candidates", 0, buffers),
@@ -64,8 +65,8 @@ const Picture& ThesisMethod::render(FrameContext& frame) {
   const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose);
   frame.timer.mark("shadow maps");
   const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
-  const Picture& picture =
-      compose_pass_.run(frame.scene, g_buffer, shadows, indirect, gather_pass_, frame.settings, frame.accumulate);
+  const Picture& picture = compose_pass_.run(frame.scene, g_buffer, shadows, indirect, gather_pass_, map_view_pass_,
+                                             frame.settings, frame.accumulate);
   frame.timer.mark("compose");
   return picture;
 }
@@ -84,6 +85,7 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
   if (groups > 1 || grid.patch_side > 1) candidates_.reserve(std::uint64_t{most_rays} * groups * sizeof(Hit));
   if (groups > 1) candidates_of_group_.reserve(std::uint64_t{most_rays} * sizeof(Hit));
+  map_view_pass_.resize(grid.map_size_px);
   gather_pass_.resize(grid.map_size_px);
   filter_pass_.resize(grid.map_size_px);
   if (all_bounces_.image && all_bounces_.image.size_px() == grid.map_size_px) return;
@@ -106,7 +108,8 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
       filter_pass_.run(gather_pass_.guide(), bounce_);
       frame.timer.mark("filter");
     }
-    add_maps_pass_.run(bounce_, all_bounces_, bounce == 1);
+    const bool alone = frame.settings.view == ViewKind::kBounce;
+    if (!alone || bounce == frame.settings.view_index) add_maps_pass_.run(bounce_, all_bounces_, alone || bounce == 1);
     std::swap(bounce_, previous_bounce_);
     frame.timer.mark("gather");
   }
@@ -162,6 +165,8 @@ void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, c
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
   for (std::uint32_t first = 0; first < samples; first += batch) {
     const OcclusionRays rays{trace_batch(frame, g_buffer, grid, first, batch), *patches_, active_blocks_->slots()};
+    if (bounce == 1 && MapViewPass::is_of_batch(frame.settings, first, rays.directions.count))
+      map_view_pass_.run(grid, *active_blocks_, rays, occlusion_, candidates_, frame.settings);
     if (bounce == 1)
       hit_light_pass_.run(frame.scene, rays, occlusion_, shadows, literal);
     else

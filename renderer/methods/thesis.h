@@ -41,6 +41,7 @@ class ThesisMethod {
   GatherPass gather_pass_;
   IndirectFilterPass filter_pass_;
   AddMapsPass add_maps_pass_;
+  MapViewPass map_view_pass_;
   ComposePass compose_pass_;
   OcclusionMap occlusion_;
   gl::Buffer candidates_, candidates_of_group_;  // Hit

@@ -18,7 +18,43 @@ struct DeviceEnvironment {
 };
 
 bool is_of_light(ViewKind view) {
-  return view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
+  return view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect ||
+         view == ViewKind::kBounce;
+}
+
+// The shaders' names of the views.
+constexpr bool is(ViewKind view, int value) {
+  return static_cast<int>(view) == value;
+}
+static_assert(is(ViewKind::kFinal, VIEW_FINAL) && is(ViewKind::kDirect, VIEW_DIRECT) &&
+              is(ViewKind::kIndirect, VIEW_INDIRECT) && is(ViewKind::kAlbedo, VIEW_ALBEDO) &&
+              is(ViewKind::kNormal, VIEW_NORMAL) && is(ViewKind::kDepth, VIEW_DEPTH) &&
+              is(ViewKind::kOcclusionDistance, VIEW_OCCLUSION_DISTANCE) && is(ViewKind::kPosition, VIEW_POSITION) &&
+              is(ViewKind::kNormalDepth, VIEW_NORMAL_DEPTH) && is(ViewKind::kBounce, VIEW_BOUNCE) &&
+              is(ViewKind::kDirection, VIEW_DIRECTION) && is(ViewKind::kHitDistance, VIEW_HIT_DISTANCE) &&
+              is(ViewKind::kPatch, VIEW_PATCH) && is(ViewKind::kReference, VIEW_REFERENCE) &&
+              is(ViewKind::kCandidates, VIEW_CANDIDATES) && is(ViewKind::kUnmatched, VIEW_UNMATCHED));
+
+// How display.comp shows a view's values.
+int mapping_of(ViewKind view) {
+  enum { kExposed, kAsItIs, kDistance, kRepeating, kSigned };
+  switch (view) {
+    case ViewKind::kFinal:
+    case ViewKind::kDirect:
+    case ViewKind::kIndirect:
+    case ViewKind::kBounce:
+      return kExposed;
+    case ViewKind::kDepth:
+    case ViewKind::kOcclusionDistance:
+    case ViewKind::kHitDistance:
+      return kDistance;
+    case ViewKind::kPosition:
+      return kRepeating;
+    case ViewKind::kDirection:
+      return kSigned;
+    default:
+      return kAsItIs;
+  }
 }
 
 struct DeviceExposure {
@@ -70,14 +106,15 @@ void ComposePass::resize(const gl::Texture& depth) {
 }
 
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
-                                const IndirectMap& indirect, const GatherPass& gathered, const Settings& settings,
-                                bool accumulate) {
+                                const IndirectMap& indirect, const GatherPass& gathered, const MapViewPass& map_view,
+                                const Settings& settings, bool accumulate) {
   if (!accumulate) picture_.accumulated = 0;
   g_buffer.bind();
   shadows.bind();
   indirect.image.bind(UNIT_IMAGE_B);
   gathered.occlusion_distance().bind(UNIT_IMAGE_C);
   gathered.guide().bind(UNIT_GUIDE);
+  map_view.image().bind(UNIT_VIEW_MAP);
   framebuffer_.bind();
   if (picture_.accumulated > 0) {
     glEnable(GL_BLEND);
@@ -148,9 +185,7 @@ void DisplayPass::run(const Picture& picture, const Settings& settings) {
   exposure_.bind_storage(BINDING_EXPOSURE);
   display_.bind_storage(BINDING_OUTPUT);
   display_size_px_ = size_px_;
-  const bool colour = settings.view == ViewKind::kAlbedo || settings.view == ViewKind::kNormal;
-  const bool distance = settings.view == ViewKind::kDepth || settings.view == ViewKind::kOcclusionDistance;
-  mapping_ = colour ? 1 : distance ? 2 : 0;
+  mapping_ = mapping_of(settings.view);
   neutral_curve_ = settings.tone_map == ToneMap::kNeutral ? 1 : 0;
   fixed_exposure_ = settings.exposure_ev ? std::exp2(*settings.exposure_ev) : 0.0f;
   display_program_->dispatch(size_px_);

@@ -15,9 +15,11 @@ layout(location = 0) out vec4 picture;
 layout(binding = UNIT_IMAGE_B) uniform sampler2D indirect_map;
 layout(binding = UNIT_IMAGE_C) uniform sampler2D occlusion_distance;
 
-uniform int view;  // ViewKind
+#ifdef AUXILIARY_VIEWS
+layout(binding = UNIT_VIEW_MAP) uniform sampler2D view_map;  // see map_view.comp
+#endif
 
-const int kFinal = 0, kDirect = 1, kIndirect = 2, kAlbedo = 3, kNormal = 4, kDepth = 5, kOcclusionDistance = 6;
+uniform int view;  // VIEW_FINAL, ...
 
 vec3 direct_light(ivec2 pixel, GBufferPoint point) {
   return texelFetch(g_emission, pixel, 0).rgb +
@@ -63,10 +65,13 @@ vec3 indirect_light(GBufferPoint point, vec2 uv) {
 vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   vec3 value = vec3(0.0);
   switch (view) {
-    case kAlbedo: value = point.brdf.diffuse_albedo + point.brdf.f0; break;
-    case kNormal: value = point.normal_ws * 0.5 + 0.5; break;
-    case kDepth: value = vec3(point.view_depth_m); break;
-    default: value = textureLod(occlusion_distance, uv, 0.0).rrr;
+    case VIEW_ALBEDO: value = point.brdf.diffuse_albedo + point.brdf.f0; break;
+    case VIEW_NORMAL: value = point.normal_ws * 0.5 + 0.5; break;
+    case VIEW_DEPTH: value = vec3(point.view_depth_m); break;
+    case VIEW_POSITION: value = point.position_ws; break;
+    case VIEW_NORMAL_DEPTH: value = vec3(point.normal_ws.xy * 0.5 + 0.5, 1.0 / (1.0 + 0.1 * point.view_depth_m)); break;
+    case VIEW_OCCLUSION_DISTANCE: value = textureLod(occlusion_distance, uv, 0.0).rrr; break;
+    default: value = texelFetch(view_map, ivec2(uv * vec2(textureSize(view_map, 0))), 0).rgb;
   }
   return vec4(value, 1.0 + luminance(value));
 }
@@ -74,7 +79,8 @@ vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
 vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   const vec3 direct = direct_light(pixel, point);
   const vec3 indirect = indirect_light(point, uv);
-  const vec3 shown = direct * (view == kIndirect ? 0.0 : 1.0) + indirect * (view == kDirect ? 0.0 : 1.0);
+  const vec3 shown = direct * (view == VIEW_FINAL || view == VIEW_DIRECT ? 1.0 : 0.0) +
+                     indirect * (view == VIEW_DIRECT ? 0.0 : 1.0);
   return vec4(shown, 1.0 + luminance(direct + indirect));
 }
 #endif

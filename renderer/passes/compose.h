@@ -8,6 +8,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/variants.h"
 #include "renderer/passes/gather.h"
+#include "renderer/passes/map_view.h"
 #include "renderer/renderer.h"
 
 namespace lightwell {
@@ -40,8 +41,8 @@ class ComposePass {
   /// The view and the way of scaling up are the settings'; `gathered` holds what the indirect map was made with.
   /// `accumulate`: average with the frames already in the picture.
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
-                     const IndirectMap& indirect, const GatherPass& gathered, const Settings& settings,
-                     bool accumulate);
+                     const IndirectMap& indirect, const GatherPass& gathered, const MapViewPass& map_view,
+                     const Settings& settings, bool accumulate);
   const Picture& picture() const { return picture_; }
 
  private:

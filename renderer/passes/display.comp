@@ -15,7 +15,7 @@ layout(std430, binding = BINDING_EXPOSURE) readonly buffer Exposure {
 layout(std430, binding = BINDING_OUTPUT) writeonly buffer Display { uint display_rgbx[]; };
 
 uniform ivec2 size_px;
-uniform int mapping;          // 0 exposed and tone-mapped, 1 as it is, 2 distance
+uniform int mapping;          // 0 exposed and tone-mapped, 1 as it is, 2 distance, 3 repeats each unit, 4 from -1 to 1
 uniform int neutral_curve;    // 1: Khronos PBR Neutral; 0: cut off at 1
 uniform float fixed_exposure; // above 0: used instead of the measured one
 
@@ -28,6 +28,8 @@ void main() {
   if (neutral_curve == 1) color = tone_map_pbr_neutral(color);
   if (mapping == 1 || value.a < -0.5) color = value.rgb;
   if (mapping == 2) color = value.r > 0.0 ? vec3(1.0 / (1.0 + 4.0 * value.r * scale)) : vec3(0.0);
+  if (mapping == 3) color = fract(value.rgb);
+  if (mapping == 4) color = value.rgb * 0.5 + 0.5;
   // Half a step of noise hides the steps of eight bits in dark gradients.
   const float noise = unit_interval(hash(uvec3(pixel, 7u))) - 0.5;
   const uvec3 bytes = uvec3(clamp(srgb_from_linear(color) * 255.0 + 0.5 + noise, 0.0, 255.0));

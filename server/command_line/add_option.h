@@ -5,6 +5,7 @@
 #include <functional>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -43,7 +44,7 @@ CLI::Option* add_integer(CLI::App& app, const std::string& name, Integer& target
 
 /// An option that takes one of the names that `value_of_name` knows; `all` is what the help and a refusal list.
 template <class Enum, class ValueOfName>
-CLI::Option* add_named(CLI::App& app, const std::string& name, Enum& target, std::initializer_list<Enum> all,
+CLI::Option* add_named(CLI::App& app, const std::string& name, Enum& target, std::span<const Enum> all,
                        ValueOfName value_of_name, const std::string& help) {
   std::string names;
   for (const Enum value : all) names += (names.empty() ? "" : "|") + std::string(name_of(value));
@@ -53,6 +54,11 @@ CLI::Option* add_named(CLI::App& app, const std::string& name, Enum& target, std
     return invalid_input("", "expected one of " + names + ", not \"" + text + "\"");
   };
   return add_parsed(app, name, target, parse, names, help, std::string(name_of(target)));
+}
+template <class Enum, class ValueOfName>
+CLI::Option* add_named(CLI::App& app, const std::string& name, Enum& target, std::initializer_list<Enum> all,
+                       ValueOfName value_of_name, const std::string& help) {
+  return add_named(app, name, target, std::span<const Enum>(all.begin(), all.size()), value_of_name, help);
 }
 
 }  // namespace lightwell

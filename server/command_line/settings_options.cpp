@@ -68,10 +68,10 @@ void add_transport_options(CLI::App& app, Settings& settings) {
 }
 
 void add_display_options(CLI::App& app, Settings& settings) {
-  add_named(app, "--view", settings.view,
-            {ViewKind::kFinal, ViewKind::kDirect, ViewKind::kIndirect, ViewKind::kAlbedo, ViewKind::kNormal,
-             ViewKind::kDepth, ViewKind::kOcclusionDistance},
-            view_kind_from_name, "What the picture shows");
+  add_named(app, "--view", settings.view, all_view_kinds(), view_kind_from_name, "What the picture shows");
+  add_integer(
+      app, "--view-index", settings.view_index, 0, 4095,
+      "Which direction (from 0) or bounce (from 1) the views direction, hit-distance, candidates and bounce show");
   add_parsed(app, "--exposure", settings.exposure_ev, parse_exposure, "EV",
              "Exposure in stops: light is scaled by 2^EV; auto follows the median luminance", "auto");
   add_named(app, "--tone-map", settings.tone_map, {ToneMap::kNeutral, ToneMap::kLinear}, tone_map_from_name,

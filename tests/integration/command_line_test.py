@@ -95,6 +95,9 @@ class UsageTest(CommandLineTest):
         for wrong in [["--size", "48"], ["--size", "0x9"], ["--size", "16385x1"], ["--method", "magic"],
                       ["--samples", "0"], ["--samples", "4097"], ["--samples", "many"], ["--bounces", "-1"],
                       ["--bounces", "65"], ["--indirect-size", "7"], ["--estimator", "wrong"], ["--spp", "0"],
+                      ["--patch", "3"], ["--patch", "0"], ["--patch", "17"], ["--triangle-groups", "0"],
+                      ["--triangle-groups", "65"], ["--normal-threshold", "1.1"], ["--depth-threshold", "-0.1"],
+                      ["--depth-threshold", "nan"], ["--similarity", "none"], ["--view-index", "-1"],
                       ["--shadow-size", "63"], ["--shadow-filter", "4"], ["--time", "-1"], ["--time", "nan"],
                       ["--fps", "24"], ["--frames", "4:1"], ["--frames", "0:3"], ["--camera", "-1"],
                       ["--camera", "0", "--eye", "0,0,1", "--target", "0,0,0"], ["--eye", "0,0,1"],
@@ -255,6 +258,9 @@ class RenderTest(CommandLineTest):
 
     def test_every_choice_renders(self):
         for option in [["--bounces", "0"], ["--bounces", "3"], ["--estimator", "literal"], ["--denoise"],
+                       ["--patch", "4"], ["--patch", "2", "--triangle-groups", "3", "--no-trace-missed"],
+                       ["--patch", "8", "--similarity", "literal", "--normal-threshold", "0.5", "--depth-threshold", "1"],
+                       ["--view", "bounce", "--view-index", "1"], ["--view", "patch", "--patch", "4"],
                        ["--multiple-scattering"], ["--environment-rotation", "90", "--environment-strength", "2"],
                        ["--shadow-size", "64", "--shadow-filter", "1"], ["--background", "0.1,0.2,0.3"],
                        ["--camera", "0"], ["--eye", "0,1,3", "--target", "0,1,0", "--yfov", "60"],

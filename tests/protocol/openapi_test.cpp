@@ -124,6 +124,10 @@ TEST(OpenApi, ListsEverySettingAndNoOther) {
   SettingsSpec all;
   all.method = all.estimator = all.view = all.tone_map = "x";
   all.samples = all.bounces = all.indirect_size = all.shadow_size = all.shadow_filter = 1;
+  all.view_index = all.patch = all.triangle_groups = 1;
+  all.normal_threshold = all.depth_threshold = 0.5;
+  all.similarity = "x";
+  all.trace_missed = true;
   all.exposure_ev.emplace();
   all.background.emplace();
   all.seed = 0u;
