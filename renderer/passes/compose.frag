@@ -91,5 +91,10 @@ void main() {
   // Unlit surfaces show their colour as it is, whatever the exposure.
   const bool unlit = texelFetch(g_emission, pixel, 0).a > 0.5;
   const vec4 surface = surface_value(pixel, point, gl_FragCoord.xy / vec2(camera.size_px.xy));
-  picture = finite_light(vec4(surface.rgb, unlit ? -1.0 : surface.a));
+  const vec4 value = vec4(surface.rgb, unlit ? -1.0 : surface.a);
+#ifdef AUXILIARY_VIEWS
+  picture = finite_value(value);
+#else
+  picture = finite_light(value);
+#endif
 }

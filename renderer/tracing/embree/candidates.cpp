@@ -132,8 +132,7 @@ class Chunk {
         mapped_.hits[record] = {lanes_.t[i], lanes_.instance[i], lanes_.triangle[i], lanes_.u[i], lanes_.v[i]};
         add_to_list(record);
       } else if (trace_missed) {
-        missed_.add({{lanes_.from_x[i], lanes_.from_y[i], lanes_.from_z[i]}, 0.0f, along, 1e30f}, record);
-        if (missed_.is_full()) this->trace_missed();
+        trace(record, {{lanes_.from_x[i], lanes_.from_y[i], lanes_.from_z[i]}, 0.0f, along, 1e30f});
       } else {
         mapped_.hits[record] = {kMiss, 0, 0, 0.0f, 0.0f};
       }
@@ -143,6 +142,13 @@ class Chunk {
   void store_misses(const Run& run, std::uint32_t direction) {
     for (std::uint32_t i = run.begin; i < run.end; ++i)
       mapped_.hits[record_of(i, direction)] = {kMiss, 0, 0, 0.0f, 0.0f};
+  }
+
+  // With the next packet of them.
+  void trace(std::uint32_t record, const Ray& ray) {
+    mapped_.hits[record] = {kMiss, 0, 0, 0.0f, 0.0f};
+    if (is_active(ray)) missed_.add(ray, record);
+    if (missed_.is_full()) trace_missed();
   }
 
   void trace_missed() {

@@ -13,15 +13,6 @@ namespace {
 
 constexpr std::uint32_t kChunkRays = 1024;  // a multiple of 32, so that no two threads share a word of `visible`
 
-// Embree ends the process over a ray that is none: one that is not finite, as a degenerate camera makes them.
-bool is_active(const Ray& ray) {
-  constexpr float kFarthest = 1e18f;
-  const glm::vec3 origin = glm::abs(ray.origin_ws), direction = glm::abs(ray.direction_ws);
-  const auto is_within = [](float x) { return x <= kFarthest; };
-  return (ray.t_max >= ray.t_min) & is_within(origin.x) & is_within(origin.y) & is_within(origin.z) &
-         is_within(direction.x) & is_within(direction.y) & is_within(direction.z);
-}
-
 template <int width>
 void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, HitListWriter& list, std::uint32_t begin,
                   std::uint32_t end) {

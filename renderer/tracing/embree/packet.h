@@ -26,6 +26,16 @@ class FlushDenormals {
   unsigned saved_;
 };
 
+/// False for an inactive ray and for one that is not finite, as a degenerate camera makes them: over such a ray Embree
+/// ends the process.
+inline bool is_active(const Ray& ray) {
+  constexpr float kFarthest = 1e18f;
+  const glm::vec3 origin = glm::abs(ray.origin_ws), direction = glm::abs(ray.direction_ws);
+  const auto is_within = [](float x) { return x <= kFarthest; };
+  return (ray.t_max >= ray.t_min) & is_within(origin.x) & is_within(origin.y) & is_within(origin.z) &
+         is_within(direction.x) & is_within(direction.y) & is_within(direction.z);
+}
+
 template <int width>
 struct PacketTypes;
 template <>
