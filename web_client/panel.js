@@ -99,7 +99,7 @@ export class Panel {
     this.keep(["settings"], ({ settings }) => {
       const is_bounce = settings.view === "bounce";
       view_index.row.hidden = !is_bounce && !kDirectionViews.includes(settings.view);
-      view_index.limit(is_bounce ? settings.bounces : settings.samples - 1);
+      view_index.limit(is_bounce ? Math.min(64, Number(settings.bounces) || 64) : settings.samples - 1);
       view_index.set(settings.view_index);
     });
     const size = make_choice({
