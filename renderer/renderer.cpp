@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "renderer/check.h"
+#include "renderer/methods/realtime.h"
 #include "renderer/methods/reference.h"
 #include "renderer/methods/thesis.h"
 #include "renderer/passes/bindings.glsl"
@@ -32,6 +33,10 @@ class View : public RenderView {
     if (!thesis_) thesis_.emplace(shaders_, buffers_);
     return *thesis_;
   }
+  RealtimeMethod& realtime() {
+    if (!realtime_) realtime_.emplace(shaders_, buffers_);
+    return *realtime_;
+  }
   ReferenceMethod& reference() {
     if (!reference_) reference_.emplace(shaders_, buffers_);
     return *reference_;
@@ -55,13 +60,15 @@ class View : public RenderView {
   gl::ShaderLibrary& shaders_;
   gl::BufferUse buffers_;
   std::optional<ThesisMethod> thesis_;
+  std::optional<RealtimeMethod> realtime_;
   std::optional<ReferenceMethod> reference_;
 };
 
-bool traces_paths(const Settings& settings) {
+// Views of surfaces are those of `thesis`, whatever the method.
+Method method_of(const Settings& settings) {
   const ViewKind view = settings.view;
-  return settings.method == Method::kReference &&
-         (view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect);
+  const bool of_light = view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
+  return of_light ? settings.method : Method::kThesis;
 }
 
 std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
@@ -160,6 +167,7 @@ Renderer::Renderer(const RendererOptions& options) : state_(std::make_unique<Sta
   if (!options.compile_ahead) return;
   View view(state_->shaders, state_->buffers);
   view.thesis();
+  view.realtime();
   view.reference();
 }
 
@@ -191,17 +199,31 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const TraceScene trace_scene{pose.instances, coverage};
     state_->tracer->update(trace_scene);
     view.accumulated = request.accumulate ? view.accumulated : 0;
-    const bool paths = traces_paths(request.settings);  // which have a jitter of their own
-    state_->bind_frame(scene, request, paths ? glm::vec2(0.0f) : pixel_jitter(view.accumulated));
+    const Method method = method_of(request.settings);
+    Settings settings = request.settings;
+    // A view of surfaces by `thesis` in another method's place: its bounces, which may be without limit, do not show.
+    if (method != settings.method) settings.bounces = std::min(settings.bounces, 1);
+    const glm::vec2 jitter_px = method == Method::kReference  ? glm::vec2(0.0f)  // its paths have one of their own
+                                : method == Method::kRealtime ? pixel_jitter(view.realtime().frame_number())
+                                                              : pixel_jitter(view.accumulated);
+    state_->bind_frame(scene, request, jitter_px);
     state_->timer.mark("scene");
 
-    FrameContext context{state_->device_scene, pose,
-                         request.settings,     request.size_px,
-                         view.accumulated,     request.accumulate,
-                         *state_->tracer,      state_->triangle_groups,
-                         trace_scene,          state_->timer,
+    FrameContext context{state_->device_scene,
+                         pose,
+                         settings,
+                         request.size_px,
+                         view.accumulated,
+                         request.accumulate,
+                         *state_->tracer,
+                         state_->triangle_groups,
+                         trace_scene,
+                         state_->timer,
                          request.is_unwanted};
-    const Picture& picture = paths ? view.reference().render(context, scene) : view.thesis().render(context);
+    const Picture& picture = method == Method::kReference ? view.reference().render(context, scene)
+                             : method == Method::kRealtime
+                                 ? view.realtime().render(context, scene, request.camera, jitter_px)
+                                 : view.thesis().render(context);
     if (context.abandoned) {
       view.accumulated = 0;
       return Error{ErrorKind::kInternal, "frame", "it was wanted no more"};

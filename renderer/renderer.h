@@ -49,7 +49,8 @@ enum class ToneMap { kNeutral, kLinear };
 /// one of the two alone. All have the same mean.
 enum class LightStrategy { kBoth, kLights, kRays };
 
-/// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` only.
+/// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` and `realtime`; for the latter 3 and more
+/// are the same, since its radiance cache carries all further bounces.
 constexpr int kUnlimitedBounces = 1 << 20;
 
 /// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if
@@ -74,7 +75,7 @@ std::span<const ViewKind> all_view_kinds();
 /// knows method, bounces, light_strategy, seed and what is displayed; its views of surfaces are those of `thesis`.
 struct Settings {
   Method method = Method::kThesis;
-  int samples = 32;         // directions per pixel of the indirect map, 1..4096
+  int samples = 32;         // directions per pixel of the indirect map, 1..4096; `realtime` spreads them over 16 frames
   int bounces = 1;          // 0: direct only; 1: first bounce; ... 64, or kUnlimitedBounces
   int indirect_size = 128;  // the indirect map's longer side in pixels, 8..4096
   int patch = 1;            // side of the patches that share directions, pixels of the indirect map: 1, 2, 4, 8 or 16

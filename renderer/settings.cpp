@@ -136,8 +136,8 @@ Status check_view(const Settings& settings) {
 
 Status check_settings(const Settings& settings, glm::ivec2 size_px) {
   const bool unlimited = settings.bounces == kUnlimitedBounces;
-  if (unlimited && settings.method != Method::kReference)
-    return invalid_input("bounces", "inf is for the method reference alone");
+  if (unlimited && settings.method == Method::kThesis)
+    return invalid_input("bounces", "inf is for the methods realtime and reference");
   const Status checks[] = {check_range("width", size_px.x, 1, 16384),
                            check_range("height", size_px.y, 1, 16384),
                            check_range("samples", settings.samples, 1, 4096),
@@ -157,8 +157,6 @@ Status check_settings(const Settings& settings, glm::ivec2 size_px) {
     for (int i = 0; i < 3; ++i)
       if (!((*settings.background)[i] >= 0.0f && (*settings.background)[i] <= 1e6f))
         return invalid_input("background", "its components must be from 0 to 1e6");
-  if (settings.method == Method::kRealtime)
-    return Error{ErrorKind::kUnsupported, "method", "this version has the methods thesis and reference"};
   return Done{};
 }
 

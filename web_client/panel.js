@@ -19,7 +19,7 @@ const kDirectionViews = ["direction", "hit-distance", "candidates"];
 const kPatches = [1, 2, 4, 8, 16];
 const kTriangleGroups = [1, 2, 4, 8, 16, 32, 64];
 const kOwnCamera = "own";
-// The last step of the bounces' slider stands for "inf", which the method reference alone knows.
+// The last step of the bounces' slider stands for "inf", which the methods realtime and reference know.
 const kMostBounces = 8, kEndless = kMostBounces + 1;
 const kExposure = { min: -16, max: 16, step: 0.1 };
 
@@ -155,7 +155,7 @@ export class Panel {
 
   /** What a choice of the method changes: a number of bounces that it does not know goes with the old one. */
   settings_for_method(method) {
-    const is_endless = this.model.settings.bounces === "inf" && method !== "reference";
+    const is_endless = this.model.settings.bounces === "inf" && method === "thesis";
     return is_endless ? { method, bounces: kMostBounces } : { method };
   }
 

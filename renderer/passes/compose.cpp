@@ -108,13 +108,31 @@ void ComposePass::resize(const gl::Texture& depth) {
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                 const IndirectMap& indirect, const GatherPass& gathered, const MapViewPass& map_view,
                                 const Settings& settings, bool accumulate) {
-  if (!accumulate) picture_.accumulated = 0;
   g_buffer.bind();
   shadows.bind();
   indirect.image.bind(UNIT_IMAGE_B);
   gathered.occlusion_distance().bind(UNIT_IMAGE_C);
   gathered.guide().bind(UNIT_GUIDE);
   map_view.image().bind(UNIT_VIEW_MAP);
+  gl::Defines defines = is_of_light(settings.view) ? gl::joined(scene.light_defines(), scene.brdf_defines())
+                                                   : gl::Defines{"AUXILIARY_VIEWS 1"};
+  if (settings.denoise && is_of_light(settings.view)) defines.emplace_back("JOINT_UPSCALE 1");
+  return draw(scene, defines, settings, accumulate);
+}
+
+const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
+                                const ReconstructedMap& indirect, const Settings& settings, bool accumulate) {
+  g_buffer.bind();
+  direct.light_texels.bind(UNIT_PUNCTUAL_LIGHT);
+  direct.visible_texels.bind(UNIT_PUNCTUAL_VISIBLE);
+  indirect.image->bind(UNIT_IMAGE_B);
+  indirect.guide->bind(UNIT_GUIDE);
+  return draw(scene, gl::joined(scene.brdf_defines(), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"}), settings, accumulate);
+}
+
+const Picture& ComposePass::draw(const DeviceScene& scene, const gl::Defines& surface_defines, const Settings& settings,
+                                 bool accumulate) {
+  if (!accumulate) picture_.accumulated = 0;
   framebuffer_.bind();
   if (picture_.accumulated > 0) {
     glEnable(GL_BLEND);
@@ -123,7 +141,7 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   }
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);  // the G-buffer's depth is read by the shaders, too
-  draw_surfaces(scene, settings);
+  draw_surfaces(surface_defines, settings);
   draw_background(scene, settings);
   glDepthMask(GL_TRUE);
   glDisable(GL_DEPTH_TEST);
@@ -133,10 +151,7 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
 }
 
 // The triangle lies at infinity, at depth 0: surfaces are where something nearer is stored.
-void ComposePass::draw_surfaces(const DeviceScene& scene, const Settings& settings) {
-  gl::Defines defines = is_of_light(settings.view) ? gl::joined(scene.light_defines(), scene.brdf_defines())
-                                                   : gl::Defines{"AUXILIARY_VIEWS 1"};
-  if (settings.denoise && is_of_light(settings.view)) defines.emplace_back("JOINT_UPSCALE 1");
+void ComposePass::draw_surfaces(const gl::Defines& defines, const Settings& settings) {
   Variant& variant = surfaces_.with(defines);
   variant.view = static_cast<int>(settings.view);
   variant.program->use();

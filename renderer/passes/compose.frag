@@ -7,7 +7,9 @@
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
+#ifndef TRACED_LIGHT
 #include "shaders/lights.glsl"
+#endif
 #include "shaders/finite.glsl"
 
 // a: 1 + luminance of all light on lit surfaces, so that every view is exposed alike; -1 on unlit surfaces.
@@ -21,10 +23,23 @@ layout(binding = UNIT_VIEW_MAP) uniform sampler2D view_map;  // see map_view.com
 
 uniform int view;  // VIEW_FINAL, ...
 
+#ifdef TRACED_LIGHT
+// By one shadow ray a pixel: see punctual_light.comp.
+layout(binding = UNIT_PUNCTUAL_LIGHT) uniform samplerBuffer punctual_light;
+layout(binding = UNIT_PUNCTUAL_VISIBLE) uniform usamplerBuffer punctual_visible;  // a bit a pixel
+
+vec3 direct_light(ivec2 pixel, GBufferPoint point) {
+  const int index = pixel.y * camera.size_px.x + pixel.x;
+  const bool visible = (texelFetch(punctual_visible, index / 32).x >> (index & 31) & 1u) != 0u;
+  const vec3 light = visible ? texelFetch(punctual_light, index).rgb : vec3(0.0);
+  return texelFetch(g_emission, pixel, 0).rgb + light;
+}
+#else
 vec3 direct_light(ivec2 pixel, GBufferPoint point) {
   return texelFetch(g_emission, pixel, 0).rgb +
          reflected_punctual_light(point.brdf, point.position_ws, point.normal_ws, point.to_camera_ws);
 }
+#endif
 
 #ifdef JOINT_UPSCALE
 layout(binding = UNIT_GUIDE) uniform usampler2D guide;  // see indirect_filter.comp

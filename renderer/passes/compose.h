@@ -9,6 +9,8 @@
 #include "renderer/gl/variants.h"
 #include "renderer/passes/gather.h"
 #include "renderer/passes/map_view.h"
+#include "renderer/passes/punctual_light.h"
+#include "renderer/passes/reconstruction.h"
 #include "renderer/renderer.h"
 
 namespace lightwell {
@@ -43,6 +45,9 @@ class ComposePass {
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMap& indirect, const GatherPass& gathered, const MapViewPass& map_view,
                      const Settings& settings, bool accumulate);
+  /// The same with direct light by traced shadow rays and a map that was scaled with its guide; a view of light.
+  const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
+                     const ReconstructedMap& indirect, const Settings& settings, bool accumulate);
   const Picture& picture() const { return picture_; }
 
  private:
@@ -51,7 +56,9 @@ class ComposePass {
     gl::ProgramPtr program;
     gl::Uniform<int> view;
   };
-  void draw_surfaces(const DeviceScene& scene, const Settings& settings);
+  const Picture& draw(const DeviceScene& scene, const gl::Defines& surface_defines, const Settings& settings,
+                      bool accumulate);
+  void draw_surfaces(const gl::Defines& defines, const Settings& settings);
   void draw_background(const DeviceScene& scene, const Settings& settings);
   gl::Variants<Variant> surfaces_;
   struct Background {

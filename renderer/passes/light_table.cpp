@@ -96,8 +96,9 @@ bool LightTable::EmitterKey::operator==(const EmitterKey& other) const {
          texture.scale == other.texture.scale;
 }
 
-LightTable::LightTable()
-    : lights_("lights", 0),
+LightTable::LightTable(PlainSky plain_sky)
+    : plain_sky_(plain_sky),
+      lights_("lights", 0),
       choices_("light choices", 0),
       instance_lights_("lights of instances", 0),
       light_texels_("lights", GL_RGBA32UI),
@@ -148,7 +149,8 @@ bool LightTable::update_environment(const Environment& environment) {
                      environment.strength, environment.image};
   if (environment_key_ && *environment_key_ == key) return false;
   environment_key_ = std::move(key);
-  cells_ = make_environment_cells(environment);
+  const bool sampled = plain_sky_ == PlainSky::kSampled || environment.image;
+  cells_ = sampled ? make_environment_cells(environment) : EnvironmentCells{};
   return true;
 }
 
@@ -183,10 +185,26 @@ void LightTable::upload(const Pose& pose) {
   choices.insert(choices.end(), punctual.begin(), punctual.end());
   const std::vector<AliasEntry> cell_choices = make_alias_table(cells_.weights);
   choices.insert(choices.end(), cell_choices.begin(), cell_choices.end());
+  append_sized_lights(powers, pose.lights.size(), choices);
   fill(lights_, light_texels_, records);
   fill(choices_, choice_texels_, choices);
   fill(instance_lights_, instance_light_texels_, instance_lights);
   uploaded_instances_ = pose.instances.size();
+}
+
+// The lights after the first `punctual` ones.
+void LightTable::append_sized_lights(std::vector<double> powers, std::size_t punctual,
+                                     std::vector<AliasEntry>& choices) {
+  // Scaled, for a sum of numbers near the end of the range would be infinite.
+  const double greatest = *std::max_element(powers.begin(), powers.end());
+  for (double& power : powers) power /= std::max(greatest, 1e-300);
+  const double all = std::accumulate(powers.begin(), powers.end(), 0.0);
+  std::fill_n(powers.begin(), punctual, 0.0);
+  const double sized = std::accumulate(powers.begin(), powers.end(), 0.0);
+  counts_.sized_first = static_cast<std::uint32_t>(choices.size());
+  counts_.sized_share = all > 0.0 ? static_cast<float>(sized / all) : 0.0f;
+  const std::vector<AliasEntry> sized_choices = make_alias_table(powers);
+  choices.insert(choices.end(), sized_choices.begin(), sized_choices.end());
 }
 
 void LightTable::bind() const {
@@ -198,12 +216,16 @@ void LightTable::bind() const {
 LightTableUniforms::LightTableUniforms(const gl::ProgramPtr& program)
     : lights_(program, "table_lights"),
       punctual_(program, "table_punctual_lights"),
+      sized_first_(program, "table_sized_first"),
+      sized_share_(program, "table_sized_share"),
       cells_(program, "environment_cells"),
       environment_probability_(program, "environment_probability") {}
 
 void LightTableUniforms::set(const LightCounts& counts) const {
   lights_ = counts.lights;
   punctual_ = counts.punctual;
+  sized_first_ = counts.sized_first;
+  sized_share_ = counts.sized_share;
   cells_ = counts.environment_cells;
   environment_probability_ = counts.environment_probability;
 }

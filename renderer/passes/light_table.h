@@ -15,15 +15,21 @@ namespace lightwell {
 
 /// Where in the buffers things are; uniforms of the same names in shaders/light_sampling.glsl.
 struct LightCounts {
-  std::uint32_t lights = 0;    // all that can be chosen
-  std::uint32_t punctual = 0;  // the first of them; a table of their own follows the one of all lights
+  std::uint32_t lights = 0;       // all that can be chosen
+  std::uint32_t punctual = 0;     // the first of them; a table of their own follows the one of all lights
+  std::uint32_t sized_first = 0;  // where the table of lights with a size begins
+  float sized_share = 0.0f;       // of the power of all; 0: there is none
   glm::ivec2 environment_cells{0};
   float environment_probability = 0.0f;
 };
 
+/// Whether a sky without a picture is in the table. It is smooth, so that rays which miss find its light well enough,
+/// and without it more of the samples go to other lights.
+enum class PlainSky { kSampled, kLeftToRays };
+
 class LightTable {
  public:
-  LightTable();
+  explicit LightTable(PlainSky plain_sky = PlainSky::kSampled);
 
   /// Brings the table to a pose. What did not change since the last call is kept.
   void prepare(const Scene& scene, const Pose& pose);
@@ -34,6 +40,7 @@ class LightTable {
   const LightCounts& counts() const { return counts_; }
   bool has_punctual() const { return counts_.punctual > 0; }
   bool has_emitters() const { return has_emitters_; }
+  bool has_sized() const { return counts_.sized_share > 0.0f; }
   bool has_environment() const { return counts_.environment_probability > 0.0f; }
 
  private:
@@ -62,7 +69,9 @@ class LightTable {
   bool update_emitters(const Scene& scene, const Pose& pose);
   bool update_environment(const Environment& environment);
   void upload(const Pose& pose);
+  void append_sized_lights(std::vector<double> powers, std::size_t punctual, std::vector<AliasEntry>& choices);
 
+  PlainSky plain_sky_;
   EmissiveTextures emissive_textures_;
   std::vector<EmittingInstance> emitting_;
   std::optional<EnvironmentKey> environment_key_;
@@ -81,7 +90,8 @@ class LightTableUniforms {
   void set(const LightCounts& counts) const;
 
  private:
-  gl::Uniform<std::uint32_t> lights_, punctual_;
+  gl::Uniform<std::uint32_t> lights_, punctual_, sized_first_;
+  gl::Uniform<float> sized_share_;
   gl::Uniform<glm::ivec2> cells_;
   gl::Uniform<float> environment_probability_;
 };

@@ -51,6 +51,7 @@ struct TextureUse {
   glm::vec2 offset{0.0f};
   float rotation = 0.0f;  // radians, counter-clockwise as the extension defines it
   glm::vec2 scale{1.0f};
+  bool operator==(const TextureUse&) const = default;
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
@@ -95,6 +96,7 @@ struct Material {
   float sheen_roughness = 0.0f;
   TextureUse sheen_color_texture;      // sRGB
   TextureUse sheen_roughness_texture;  // A
+  bool operator==(const Material&) const = default;
 };
 
 struct MorphTarget {
@@ -154,6 +156,7 @@ struct Light {
   float range_m = 0.0f;                     // 0: infinite
   float inner_cone_angle = 0.0f;            // radians
   float outer_cone_angle = 0.78539816339f;  // radians, inner < outer <= pi/2
+  bool operator==(const Light&) const = default;
 };
 
 struct Camera {

@@ -7,7 +7,9 @@ layout(binding = UNIT_LIGHT_CHOICES) uniform usamplerBuffer light_choices;      
 layout(binding = UNIT_INSTANCE_LIGHTS) uniform usamplerBuffer instance_lights;     // first light + 1; 0: emits nothing
 
 uniform uint table_lights;             // in the table of all
-uniform uint table_punctual_lights;    // in the table of punctual ones, which follows; the environment's cells come last
+uniform uint table_punctual_lights;    // in the table of punctual ones, which follows; then come the environment's cells
+uniform uint table_sized_first;        // where the table of lights with a size begins, with an entry for every light
+uniform float table_sized_share;       // the probability of choosing one with a size among all
 uniform ivec2 environment_cells;
 uniform float environment_probability; // of choosing it among all
 
@@ -126,13 +128,9 @@ TableSample sample_punctual(uvec4[4] record, float probability, vec3 position_ws
 }
 #endif
 
-// One light of the table by its power and a point of it. `u` chooses the point, `u_choice` the light and `u_cell` a part
-// of the environment. `punctual_only`: among these alone.
-TableSample sample_light(vec3 position_ws, bool punctual_only, vec2 u, float u_choice, float u_cell) {
-  const uint count = punctual_only ? table_punctual_lights : table_lights;
+// A point of the chosen light, or what the light gives if it is punctual.
+TableSample sample_chosen_light(Choice choice, vec3 position_ws, vec2 u, float u_cell) {
   TableSample light = TableSample(vec3(0.0, 1.0, 0.0), 0.0, vec3(0.0), 0.0);
-  if (count == 0u) return light;
-  const Choice choice = choose(punctual_only ? table_lights : 0u, count, u_choice);
   const int first = int(4u * choice.index);
   const uvec4 head = texelFetch(light_table, first);
 #ifdef LIGHTS_TRIANGLES
@@ -148,5 +146,25 @@ TableSample sample_light(vec3 position_ws, bool punctual_only, vec2 u, float u_c
     light = sample_punctual(record, choice.probability, position_ws);
   }
 #endif
+  return light;
+}
+
+// One light of the table by its power and a point of it. `u` chooses the point, `u_choice` the light and `u_cell` a part
+// of the environment. `punctual_only`: among these alone.
+TableSample sample_light(vec3 position_ws, bool punctual_only, vec2 u, float u_choice, float u_cell) {
+  const uint count = punctual_only ? table_punctual_lights : table_lights;
+  if (count == 0u) return TableSample(vec3(0.0, 1.0, 0.0), 0.0, vec3(0.0), 0.0);
+  return sample_chosen_light(choose(punctual_only ? table_lights : 0u, count, u_choice), position_ws, u, u_cell);
+}
+
+// The same among the lights that have a size. Densities of triangle_pdf() and environment_pdf() are then to be divided by
+// table_sized_share. There must be such a light.
+TableSample sample_sized_light(vec3 position_ws, vec2 u, float u_choice, float u_cell) {
+  const Choice choice = choose(table_sized_first, table_lights, u_choice);
+  TableSample light = sample_chosen_light(choice, position_ws, u, u_cell);
+  if (light.distance_m < kInfinitelyFar) {  // a triangle: its record has the density among all
+    light.pdf /= table_sized_share;
+    light.value *= table_sized_share;
+  }
   return light;
 }

@@ -58,7 +58,8 @@ Result<std::string> parse_tracer(const std::string& text) {
 void add_transport_options(CLI::App& app, Settings& settings) {
   add_named(app, "--method", settings.method, {Method::kThesis, Method::kRealtime, Method::kReference},
             method_from_name, "How light is found");
-  add_integer(app, "--samples", settings.samples, 1, 4096, "Directions per pixel of the indirect map");
+  add_integer(app, "--samples", settings.samples, 1, 4096,
+              "Directions per pixel of the indirect map; realtime spreads them over 16 frames");
   add_integer(app, "--indirect-size", settings.indirect_size, 8, 4096,
               "The longer side of the map in which indirect light is found, in pixels");
   add_thesis_options(app, settings);
@@ -90,7 +91,8 @@ void add_display_options(CLI::App& app, Settings& settings) {
 
 void add_thesis_options(CLI::App& app, Settings& settings) {
   add_parsed(app, "--bounces", settings.bounces, parse_bounces, "N",
-             "0: direct light only, 1: the first bounce, ... 64; inf: no limit, with the method reference",
+             "0: direct light only, 1: the first bounce, ... 64; inf: no limit, with the methods realtime (which knows "
+             "none from 3 on) and reference",
              std::to_string(settings.bounces));
   add_named(app, "--estimator", settings.estimator, {Estimator::kCorrected, Estimator::kLiteral}, estimator_from_name,
             "The thesis' sum over directions: unbiased, or to the letter");

@@ -1,0 +1,92 @@
+#include "renderer/methods/realtime.h"
+
+#include <algorithm>
+
+#include "renderer/passes/camera_block.h"
+
+namespace lightwell {
+
+namespace {
+
+// The directions of a texel are spread over so many frames.
+constexpr std::uint32_t kFramesOfSamples = 16;
+
+// While the cache is young all paths go on, to fill it; later one of four.
+constexpr std::uint32_t kFillingFrames = 8, kPathStride = 4;
+
+constexpr float kGreatChange = 0.1f;  // of the light: the cache is filled anew
+
+// After as great a change of light as there is, what was known before counts for a quarter of a frame: 3 % of what is
+// found in the next eight.
+constexpr float kKeptAfterChange = 0.25f;
+
+// What the history counts for, in frames. `age`: frames since the cache began to be filled; while it carries bounces,
+// the first of them hold too little light, so that they are forgotten.
+float kept_frames(const SceneChange& change, bool cache_carries, std::uint32_t age) {
+  constexpr float kInMotion = 24.0f, kStill = 1024.0f, kOfAge = 0.5f;
+  float most = change.moving ? kInMotion : kStill;
+  if (cache_carries) most = std::min(most, kOfAge * static_cast<float>(age + 1));
+  return change.light_share > 0.0f ? std::min(most, kKeptAfterChange / change.light_share) : most;
+}
+
+}  // namespace
+
+RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
+    : g_buffer_pass_(shaders),
+      lights_(PlainSky::kLeftToRays),
+      punctual_light_pass_(shaders, buffers),
+      samples_pass_(shaders, buffers),
+      cache_(shaders),
+      reconstruction_pass_(shaders),
+      compose_pass_(shaders) {}
+
+const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera,
+                                      glm::vec2 jitter_px) {
+  change_ = changes_.look_at(scene, frame.pose);
+  if (change_.light_share > kGreatChange) filled_from_ = frame_number_;
+  lights_.prepare(scene, frame.pose);
+  lights_.bind();
+  g_buffer_pass_.resize(frame.size_px);
+  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame_number_);
+  frame.timer.mark("g-buffer");
+  punctual_light_pass_.resize(frame.size_px);
+  const TracedLight& direct = punctual_light_pass_.run(frame, g_buffer, lights_, frame_number_);
+  const ReconstructedMap indirect = indirect_light(frame, g_buffer, camera, jitter_px);
+  compose_pass_.resize(g_buffer.depth);
+  const Picture& picture = compose_pass_.run(frame.scene, g_buffer, direct, indirect, frame.settings, frame.accumulate);
+  frame.timer.mark("compose");
+  previous_camera_ = camera;
+  ++frame_number_;
+  return picture;
+}
+
+PatchGrid RealtimeMethod::grid_of(const FrameContext& frame) const {
+  PatchGrid grid;
+  grid.map_size_px = PatchGrid::map_size(frame.size_px, frame.settings.indirect_size);
+  grid.picture_size_px = frame.size_px;
+  grid.rays_per_texel = std::max(1u, static_cast<std::uint32_t>(frame.settings.samples) / kFramesOfSamples);
+  grid.frame_number = frame_number_;
+  grid.seed = frame.settings.seed;
+  return grid;
+}
+
+ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuffer& g_buffer,
+                                                const PlacedCamera& camera, glm::vec2 jitter_px) {
+  const PatchGrid grid = grid_of(frame);
+  samples_pass_.resize(grid);
+  reconstruction_pass_.resize(grid.map_size_px);
+  if (frame.settings.bounces == 0) return reconstruction_pass_.nothing();
+  cache_.begin_frame(frame.pose, change_);
+  const std::uint32_t stride = frame_number_ - filled_from_ < kFillingFrames ? 1 : kPathStride;
+  const PatchSamples& samples = samples_pass_.run(frame, g_buffer, lights_, cache_, grid, stride);
+  // With this frame's jitter, so that what stands still is found exactly where it was.
+  const PlacedCamera& before = frame_number_ > 0 ? previous_camera_ : camera;
+  const glm::mat4 previous_clip_from_world = make_camera_block(before, frame.size_px, jitter_px).clip_from_world;
+  const ReconstructedMap map =
+      reconstruction_pass_.run(g_buffer, frame.scene, samples, grid, previous_clip_from_world,
+                               kept_frames(change_, frame.settings.bounces > 2, frame_number_ - filled_from_));
+  frame.timer.mark("reconstruction");
+  return map;
+}
+
+}  // namespace lightwell

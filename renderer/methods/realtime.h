@@ -1,0 +1,47 @@
+// Global illumination of fully dynamic scenes at a rate to work with: an occlusion map of one real pixel per patch,
+// lights sampled with traced shadow rays, further bounces from a radiance cache in the world, and reuse of earlier
+// frames.
+#pragma once
+
+#include "renderer/methods/frame_context.h"
+#include "renderer/passes/compose.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/light_table.h"
+#include "renderer/passes/patch_samples.h"
+#include "renderer/passes/punctual_light.h"
+#include "renderer/passes/radiance_cache.h"
+#include "renderer/passes/reconstruction.h"
+#include "renderer/passes/scene_changes.h"
+
+namespace lightwell {
+
+class RealtimeMethod {
+ public:
+  /// `buffers`: where rays and hits live; host-visible for a native tracer.
+  RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
+
+  /// Frames made so far: the number of the next one. Its picture is to be moved by pixel_jitter of this.
+  std::uint32_t frame_number() const { return frame_number_; }
+
+  /// One frame, with what is known of the frames before. The camera and environment blocks and the scene are bound.
+  const Picture& render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera, glm::vec2 jitter_px);
+
+ private:
+  ReconstructedMap indirect_light(FrameContext& frame, const GBuffer& g_buffer, const PlacedCamera& camera,
+                                  glm::vec2 jitter_px);
+  PatchGrid grid_of(const FrameContext& frame) const;
+
+  GBufferPass g_buffer_pass_;
+  LightTable lights_;
+  PunctualLightPass punctual_light_pass_;
+  PatchSamplesPass samples_pass_;
+  RadianceCache cache_;
+  ReconstructionPass reconstruction_pass_;
+  ComposePass compose_pass_;
+  SceneChanges changes_;
+  SceneChange change_;  // in this frame
+  std::uint32_t frame_number_ = 0, filled_from_ = 0;
+  PlacedCamera previous_camera_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,128 @@
+// The light of a patch's samples, and the light found in the frames before: temporal reuse. The history follows the surface
+// and counts where depth (as distance from the plane) and normal agree. The map holds light over directional albedo.
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/g_buffer.glsl"
+#include "shaders/patch_samples.glsl"
+
+layout(binding = UNIT_SAMPLE_STATES) uniform samplerBuffer states;       // weight of a ray; density
+layout(binding = UNIT_SAMPLE_LIGHT) uniform samplerBuffer light;         // two a slot: known, waiting; then of the lamps
+layout(binding = UNIT_SAMPLE_VISIBLE) uniform usamplerBuffer visible;    // a bit a shadow ray
+layout(binding = UNIT_NEXT_STATES) uniform samplerBuffer next_states;    // two a path that went on; first: reflectance
+layout(binding = UNIT_NEXT_LIGHT) uniform samplerBuffer next_light;      // two a path that went on; first: what came
+layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_map;           // rgb; a: frames in it
+layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance, first and second
+layout(binding = UNIT_IMAGE_C) uniform usampler2D previous_guide;        // position, normal and roughness
+
+layout(location = 0) out vec4 out_map;
+layout(location = 1) out vec4 out_moments;
+layout(location = 2) out uvec4 out_guide;
+
+uniform uint sample_count;
+uniform uint path_stride;
+uniform uint path_phase;
+uniform uint first_next;             // the place of the first path that went on
+uniform int lamps_sampled;           // 1: behind the rays' light is that of the lamps
+uniform mat4 previous_clip_from_world;
+uniform float kept_frames;           // that the history counts for at most
+uniform int has_history;
+
+const float kPlaneTolerance = 0.02;  // of the distance from the eye
+const float kLeastCosine = 0.9;
+const float kGreatest = 1e15;
+
+bool is_visible(uint slot) { return (texelFetch(visible, int(slot / 32u)).x >> (slot & 31u) & 1u) != 0u; }
+
+vec3 light_of_ray(uint slot) {
+  const vec4 known = texelFetch(light, int(2u * slot));
+  const vec4 waiting = texelFetch(light, int(2u * slot + 1u));
+  vec3 arriving = known.rgb + (is_visible(slot) ? waiting.rgb : vec3(0.0));
+  if (waiting.a > 0.5 && slot % path_stride == path_phase) {
+    const int next = int(2u * (first_next + slot / path_stride));
+    arriving += texelFetch(next_states, next).rgb * texelFetch(next_light, next).rgb;
+  }
+  return arriving * texelFetch(states, int(slot)).rgb;
+}
+
+vec3 light_of_samples(uint texel_index) {
+  const uint texels = uint(map_size_px.x * map_size_px.y);
+  vec3 sum = vec3(0.0);
+  for (uint ray = 0u; ray < rays_per_texel; ++ray) sum += light_of_ray(ray * texels + texel_index);
+  sum /= float(rays_per_texel);
+  if (lamps_sampled == 1 && is_visible(sample_count + texel_index))
+    sum += texelFetch(light, int(2u * sample_count + texel_index)).rgb;
+  return sum;
+}
+
+struct History {
+  vec3 light;
+  float frames;
+  vec2 moments;
+  float weight;
+};
+
+void add_tap(inout History history, ivec2 texel, float weight, vec3 position_ws, vec3 normal_ws, float plane_scale) {
+  const ivec2 inside = clamp(texel, ivec2(0), map_size_px - 1);
+  const uvec4 there = texelFetch(previous_guide, inside, 0);
+  const vec4 value = texelFetch(previous_map, inside, 0);
+  const vec3 other_normal_ws = unpack_normal_roughness(there.w).xyz;
+  const float off_plane = abs(dot(uintBitsToFloat(there.xyz) - position_ws, normal_ws)) * plane_scale;
+  const bool same = inside == texel && value.a > 0.0 && off_plane < 1.0 && dot(other_normal_ws, normal_ws) > kLeastCosine;
+  if (!same) return;
+  history.light += weight * value.rgb;
+  history.frames += weight * value.a;
+  history.moments += weight * texelFetch(previous_moments, inside, 0).xy;
+  history.weight += weight;
+}
+
+// Of the place where the texel's surface was a frame ago.
+History history_at(GBufferPoint point, vec2 pixel_center, vec2 texel_center) {
+  History history = History(vec3(0.0), 0.0, vec2(0.0), 0.0);
+  const vec4 clip = previous_clip_from_world * vec4(point.position_ws, 1.0);
+  const vec2 before_px = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size_px.xy);
+  if (has_history == 0 || clip.w <= 0.0) return history;
+  // By the texel's middle, not by the pixel's: what does not move is not resampled and stays sharp.
+  const vec2 before = texel_center + (before_px - pixel_center) / pixels_per_texel - 0.5;
+  const ivec2 corner = ivec2(floor(before));
+  const vec2 fraction = before - vec2(corner);
+  const float plane_scale = 1.0 / (kPlaneTolerance * point.view_depth_m);
+  for (int i = 0; i < 4; ++i) {
+    const ivec2 offset = ivec2(i & 1, i >> 1);
+    const vec2 share = mix(1.0 - fraction, fraction, vec2(offset));
+    if (share.x * share.y > 1e-3)
+      add_tap(history, corner + offset, share.x * share.y, point.position_ws, point.normal_ws, plane_scale);
+  }
+  if (history.weight > 0.0) return history;
+  // An edge within the patch: its other surface was seen last. A neighbour knows this one.
+  const ivec2 nearest = ivec2(floor(before + 0.5));
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x)
+      add_tap(history, nearest + ivec2(x, y), 1.0, point.position_ws, point.normal_ws, plane_scale);
+  return history;
+}
+
+void main() {
+  const ivec2 texel = ivec2(gl_FragCoord.xy);
+  const ivec2 pixel = sampled_pixel(texel);
+  const GBufferPoint point = g_buffer_point(pixel);
+  out_guide = uvec4(floatBitsToUint(point.position_ws),
+                    pack_normal_roughness(point.normal_ws, sqrt(point.brdf.alpha)));
+  if (!point.valid) {
+    out_map = vec4(0.0);
+    out_moments = vec4(0.0);
+    return;
+  }
+  // History never lets go of what is not a number, and luminance is squared.
+  const vec3 samples = light_of_samples(uint(texel.y * map_size_px.x + texel.x));
+  const vec3 now = mix(vec3(0.0), clamp(samples, 0.0, kGreatest), equal(samples, samples));
+  const float now_luminance = luminance(now);
+  const History history = history_at(point, vec2(pixel) + 0.5, vec2(texel) + 0.5);
+  const float share = 1.0 / max(history.weight, 1e-6);
+  const float frames = min(history.weight > 0.0 ? history.frames * share : 0.0, kept_frames);
+  const float fresh = 1.0 / (frames + 1.0);
+  out_map = vec4(mix(history.light * share, now, fresh), frames + 1.0);
+  out_moments = vec4(mix(history.moments * share, vec2(now_luminance, now_luminance * now_luminance), fresh), 0.0, 0.0);
+}

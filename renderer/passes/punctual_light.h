@@ -1,0 +1,42 @@
+// Direct light of lights without a size, by one traced shadow ray a pixel.
+#pragma once
+
+#include "renderer/gl/variants.h"
+#include "renderer/methods/frame_context.h"
+#include "renderer/passes/g_buffer.h"
+#include "renderer/passes/light_table.h"
+
+namespace lightwell {
+
+/// Per pixel of the picture, row by row: what its light would give (vec4, nit), and a bit that says whether it reaches.
+struct TracedLight {
+  gl::Buffer light, visible;
+  gl::BufferTexture light_texels{"punctual light", GL_RGBA32F};
+  gl::BufferTexture visible_texels{"visible punctual lights", GL_R32UI};
+};
+
+class PunctualLightPass {
+ public:
+  /// `buffers`: where rays live; host-visible for a native tracer.
+  PunctualLightPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
+  void resize(glm::ivec2 size_px);
+
+  /// `lights` is bound. `frame_number` counts the frames of the view.
+  const TracedLight& run(FrameContext& frame, const GBuffer& g_buffer, const LightTable& lights,
+                         std::uint32_t frame_number);
+
+ private:
+  struct Variant {
+    explicit Variant(const gl::ProgramPtr& p)
+        : program(p), lights(p), frame_number(p, "frame_number"), seed(p, "seed") {}
+    gl::ProgramPtr program;
+    LightTableUniforms lights;
+    gl::Uniform<std::uint32_t> frame_number, seed;
+  };
+  gl::Variants<Variant> variants_;
+  gl::BufferUse buffers_;
+  gl::Buffer rays_;
+  TracedLight traced_;
+};
+
+}  // namespace lightwell

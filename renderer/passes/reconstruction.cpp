@@ -1,0 +1,111 @@
+#include "renderer/passes/reconstruction.h"
+
+#include <utility>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+namespace {
+
+constexpr float kLuminanceTolerance = 4.0f;  // standard deviations
+
+gl::ProgramPtr filter_step(gl::ShaderLibrary& shaders, const gl::Defines& defines) {
+  return shaders.raster("passes/full_screen.vert", "passes/patch_filter.frag", defines);
+}
+
+}  // namespace
+
+ReconstructionPass::Light::Light(const gl::ProgramPtr& p)
+    : program(p),
+      grid(p),
+      sample_count(p, "sample_count"),
+      path_stride(p, "path_stride"),
+      path_phase(p, "path_phase"),
+      first_next(p, "first_next"),
+      lamps_sampled(p, "lamps_sampled"),
+      has_history(p, "has_history"),
+      previous_clip_from_world(p, "previous_clip_from_world"),
+      kept_frames(p, "kept_frames") {}
+
+ReconstructionPass::ReconstructionPass(gl::ShaderLibrary& shaders)
+    : light_([&shaders](const gl::Defines& defines) {
+        return shaders.raster("passes/full_screen.vert", "passes/patch_light.frag", defines);
+      }),
+      filter_first_(filter_step(shaders, {"FIRST 1"})),
+      filter_next_(filter_step(shaders, {})),
+      filter_last_(filter_step(shaders, {"LAST 1"})) {}
+
+void ReconstructionPass::resize(glm::ivec2 map_size_px) {
+  if (now_.map && now_.map.size_px() == map_size_px) return;
+  has_history_ = false;
+  for (History* history : {&now_, &before_}) {
+    history->map = gl::Texture("indirect map", GL_RGBA32F, map_size_px);
+    history->moments = gl::Texture("moments of the indirect map", GL_RGBA32F, map_size_px);
+    history->guide = gl::Texture("guide of the indirect map", GL_RGBA32UI, map_size_px);
+    history->framebuffer =
+        gl::Framebuffer("indirect map", {&history->map, &history->moments, &history->guide}, nullptr);
+  }
+  gl::TextureOptions options;
+  options.min_filter = options.mag_filter = GL_LINEAR;
+  for (Scratch& scratch : scratch_) {
+    scratch.map = gl::Texture("filtered indirect map", GL_RGBA32F, map_size_px, options);
+    scratch.framebuffer = gl::Framebuffer("filtered indirect map", {&scratch.map}, nullptr);
+  }
+}
+
+ReconstructedMap ReconstructionPass::run(const GBuffer& g_buffer, const DeviceScene& scene, const PatchSamples& samples,
+                                         const PatchGrid& grid, const glm::mat4& previous_clip_from_world,
+                                         float kept_frames) {
+  std::swap(now_, before_);
+  g_buffer.bind();
+  samples.states.bind(UNIT_SAMPLE_STATES);
+  samples.light.bind(UNIT_SAMPLE_LIGHT);
+  samples.visible.bind(UNIT_SAMPLE_VISIBLE);
+  samples.next_states.bind(UNIT_NEXT_STATES);
+  samples.next_light.bind(UNIT_NEXT_LIGHT);
+  before_.map.bind(UNIT_IMAGE_A);
+  before_.moments.bind(UNIT_IMAGE_B);
+  before_.guide.bind(UNIT_IMAGE_C);
+  Light& light = light_.with(scene.brdf_defines());
+  light.grid.set(grid);
+  light.sample_count = grid.samples();
+  light.path_stride = samples.path_stride;
+  light.path_phase = samples.path_phase;
+  light.first_next = samples.first_next;
+  light.lamps_sampled = samples.lamps_sampled ? 1 : 0;
+  light.has_history = has_history_ ? 1 : 0;
+  light.previous_clip_from_world = previous_clip_from_world;
+  light.kept_frames = kept_frames;
+  now_.framebuffer.bind();
+  light.program->use();
+  full_screen_.draw_full_screen();
+  has_history_ = true;
+  return filter();
+}
+
+ReconstructedMap ReconstructionPass::nothing() const {
+  scratch_[0].map.clear(glm::vec4(0.0f));
+  return {&scratch_[0].map, &now_.guide};
+}
+
+ReconstructedMap ReconstructionPass::filter() {
+  now_.moments.bind(UNIT_IMAGE_B);
+  now_.guide.bind(UNIT_IMAGE_C);
+  const gl::Texture* from = &now_.map;
+  Scratch* to = &scratch_[0];
+  const std::pair<Filter*, int> steps[] = {{&filter_first_, 1}, {&filter_next_, 2}, {&filter_last_, 4}};
+  for (const auto& [filter, stride] : steps) {
+    from->bind(UNIT_IMAGE_A);
+    to->framebuffer.bind();
+    filter->stride = stride;
+    filter->tolerance = kLuminanceTolerance;
+    filter->program->use();
+    full_screen_.draw_full_screen();
+    from = &to->map;
+    to = to == &scratch_[0] ? &scratch_[1] : &scratch_[0];
+  }
+  return {from, &now_.guide};
+}
+
+}  // namespace lightwell

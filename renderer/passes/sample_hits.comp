@@ -1,0 +1,207 @@
+// What leaves the hits of the occlusion map: their emission, a sample of the lights that waits for its shadow ray, and light
+// that has bounced before, from the radiance cache. Some hits' paths go on by one more ray, sampled by the cosine: what
+// comes along them fills the cache. FIRST_HITS: along the rays from pixels; else along those from hits.
+layout(local_size_x = 64) in;
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/scene_data.glsl"
+#include "shaders/ray.glsl"
+#ifdef HAS_TEXTURES
+#include "shaders/textures.glsl"
+#endif
+#include "shaders/surface.glsl"
+#include "shaders/hit_surface.glsl"
+#include "shaders/lights.glsl"
+#include "shaders/environment.glsl"
+#include "shaders/light_sampling.glsl"
+#include "shaders/next_event.glsl"
+#include "shaders/fetch_hit.glsl"
+#include "shaders/patch_samples.glsl"
+#define CELL_INSERTION
+#include "shaders/radiance_cache.glsl"
+
+layout(binding = UNIT_SAMPLE_STATES) uniform samplerBuffer states_in;  // a: density of the ray
+layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+// Two a slot: what is known; what waits for the shadow ray.
+layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
+// Of paths that go on: rays; two a path, reflectance and density, and the cells that the path fills.
+layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { Ray next_rays[]; };
+layout(std430, binding = BINDING_SAMPLE_STATES) writeonly buffer States { vec4 next_states[]; };
+
+uniform uint path_count;
+uniform uint path_stride;     // of every so many slots one's path goes on
+uniform uint path_phase;      // which one
+uniform uint first_next;      // the first place for a path that goes on, and how many there are
+uniform uint most_next;
+uniform int lamps_light_hits;  // 0: punctual lights alone, in the last bounce
+uniform int cache_lights_hits; // 0: not in the last bounces
+
+const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
+const float kSideOverDistance = 0.5;   // of a cell over the length of the ray that came to it
+
+struct PathVertex {
+  uint slot;
+  uint next;         // where its path goes on
+  uint number;       // in the Sobol sequences
+  uint seed;         // of the decisions here
+  Ray ray;
+  float ray_pdf;     // times how many such rays there are
+  float light_share; // of the density of table lights in the sampling that the rays compete with
+};
+
+vec3 light_of_miss(PathVertex at) {
+  float weight = 1.0;
+#ifdef LIGHTS_ENVIRONMENT
+  weight = mis_weight(at.ray_pdf, environment_pdf(at.ray.direction_ws) / at.light_share);
+#endif
+  return environment_radiance(at.ray.direction_ws) * weight;
+}
+
+vec3 emission_of(PathVertex at, Hit hit, HitPoint point) {
+  float weight = 1.0;
+#ifdef LIGHTS_TRIANGLES
+  const float cosine = dot(point.geometric_normal_ws, at.ray.direction_ws);
+  const float density = triangle_pdf(hit.instance, hit.triangle, hit.t, cosine) / at.light_share;
+  if (density > 0.0) weight = mis_weight(at.ray_pdf, density);
+#endif
+  return point.surface.emission * weight;
+}
+
+// A direction counts where shading and geometric normal agree on its side.
+bool is_above(HitPoint point, vec3 in_direction, vec3 in_ws) {
+  return in_direction.z > 0.0 && dot(in_ws, point.geometric_normal_ws) > 0.0;
+}
+
+vec3 sample_lights(PathVertex at, Hit hit, HitPoint point, mat3 frame) {
+  Ray ray = kNoRay;
+  vec3 value = vec3(0.0);
+#if defined(LIGHTS_PUNCTUAL) || defined(LIGHTS_TRIANGLES) || defined(LIGHTS_ENVIRONMENT)
+  const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kLight));
+  const vec2 u_choice = sobol_2d(at.number, decision_seed(at.seed, kLightChoice));
+  const TableSample lamp = sample_light(point.position_ws, lamps_light_hits == 0, u, u_choice.x, u_choice.y);
+  const vec3 in_direction = lamp.to_light_ws * frame;
+  // The rays that may find the same light are sampled by the cosine.
+  const float weight = lamp.pdf > 0.0 ? mis_weight(lamp.pdf, in_direction.z / kPi) : 1.0;
+  if (is_above(point, in_direction, lamp.to_light_ws))
+    value = brdf_times_cosine(point.brdf, -at.ray.direction_ws * frame, in_direction) * lamp.value * weight;
+  if (greatest(value) > 0.0)
+    ray = shadow_ray(lifted(point.position_ws, point.geometric_normal_ws, hit.t, lamp.to_light_ws), point.position_ws,
+                     lamp);
+#endif
+  shadow_rays[at.slot] = ray;
+  return value;
+}
+
+// What the surface sends back of light that arrives from everywhere alike.
+vec3 reflectance(PathVertex at, HitPoint point) {
+  return directional_albedo(point.brdf, max(dot(point.surface.normal_ws, -at.ray.direction_ws), 0.0));
+}
+
+struct Cells {
+  uint fine, coarse;
+};
+
+Cells cells_at(PathVertex at, Hit hit, HitPoint point, bool fills) {
+  const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kCell));
+  const float most_side_m = hit.t * kSideOverDistance;
+  const CellPlace fine = cell_place(point.position_ws, point.geometric_normal_ws, most_side_m, false, u);
+  const CellPlace coarse = cell_place(point.position_ws, point.geometric_normal_ws, most_side_m, true, u);
+  if (fills) return Cells(make_cell(fine), make_cell(coarse));
+  return Cells(find_cell(fine), find_cell(coarse));
+}
+
+// The fine cell's, unless it has hardly begun.
+CellValue light_of(Cells cells) {
+  const CellValue fine = value_of(cells.fine);
+  const CellValue coarse = value_of(cells.coarse);
+  if (fine.samples >= kFewSamples || fine.samples >= coarse.samples) return fine;
+  return coarse;
+}
+
+// The ray of a path that goes on, with the hit's reflectance and the cells that it fills.
+void go_on(PathVertex at, Hit hit, HitPoint point, mat3 frame, Cells cells, vec3 reflected_share) {
+  const vec3 in_direction = cosine_hemisphere(sobol_2d(at.number, decision_seed(at.seed, kDirection)));
+  const vec3 in_ws = normalize(frame * in_direction);
+  const bool alive = is_above(point, in_direction, in_ws);
+  const vec3 origin_ws = lifted(point.position_ws, point.geometric_normal_ws, hit.t, in_ws);
+  next_rays[at.next] = Ray(origin_ws, 0.0, in_ws, alive ? 1e30 : -1.0);
+  next_states[2u * at.next] = vec4(reflected_share, alive ? in_direction.z / kPi : 0.0);
+  next_states[2u * at.next + 1u] = vec4(uintBitsToFloat(cells.fine), uintBitsToFloat(cells.coarse), 0.0, 0.0);
+}
+
+void end_path(uint next) {
+  next_rays[next] = kNoRay;
+  next_states[2u * next] = vec4(0.0);
+  next_states[2u * next + 1u] = vec4(uintBitsToFloat(uvec2(kNoCell)), 0.0, 0.0);
+}
+
+void finish(uint slot, vec3 known, vec3 waiting, float distance_m, float own_path) {
+  light[2u * slot] = vec4(known, distance_m);
+  light[2u * slot + 1u] = vec4(waiting, own_path);
+}
+
+const uint kNowhere = 0xffffffffu;
+
+// Where the slot's path goes on, or kNowhere.
+uint place_of_next(uint slot) {
+  const uint place = slot / path_stride;
+  return slot % path_stride == path_phase && place < most_next ? first_next + place : kNowhere;
+}
+
+PathVertex vertex_of(uint slot) {
+  PathVertex at;
+  at.slot = slot;
+  at.ray = fetch_ray(int(slot));
+  at.next = place_of_next(slot);
+#ifdef FIRST_HITS
+  const uint texels = uint(map_size_px.x * map_size_px.y);
+  const ivec2 texel = ivec2(slot % texels % uint(map_size_px.x), slot % texels / uint(map_size_px.x));
+  at.number = sample_number(slot / texels);
+  at.seed = decision_seed(texel_seed(texel), kDecisionsAtHit);
+  at.ray_pdf = texelFetch(states_in, int(slot)).a * float(rays_per_texel);
+  at.light_share = table_sized_share;
+#else
+  at.number = frame_number;
+  at.seed = hash(uvec3(slot, 0x1234567u, seed));
+  at.ray_pdf = texelFetch(states_in, int(2u * slot)).a;
+  at.light_share = 1.0;
+#endif
+  return at;
+}
+
+void main() {
+  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  if (slot >= path_count) return;
+  const PathVertex at = vertex_of(slot);
+  const bool goes_on = at.next != kNowhere;
+  const Hit hit = fetch_hit(int(slot));
+  if (hit.t < 0.0) {
+    shadow_rays[slot] = kNoRay;
+    if (goes_on) end_path(at.next);
+    finish(slot, at.ray.t_max > 0.0 ? light_of_miss(at) : vec3(0.0), vec3(0.0), -1.0, 0.0);
+    return;
+  }
+  HitPoint point = hit_point(at.ray, hit, hit.t * kFootprintPerMetre);
+  const bool lit = (point.material_flags & kMaterialUnlit) == 0u;
+  const mat3 frame = frame_around(point.surface.normal_ws);
+  const vec3 reflected_share = reflectance(at, point);
+  point.brdf = brdf_in_frame(point.brdf, frame);
+  vec3 known = emission_of(at, hit, point);
+  const vec3 waiting = sample_lights(at, hit, point, frame);
+  const Cells cells = cells_at(at, hit, point, goes_on && lit);
+  const CellValue bounced = light_of(cells);
+  if (goes_on && lit) go_on(at, hit, point, frame, cells, reflected_share);
+  if (goes_on && !lit) end_path(at.next);
+#ifdef FIRST_HITS
+  const bool own_path = goes_on && bounced.samples < kFewSamples;
+#else
+  const bool own_path = false;
+#endif
+  if (cache_lights_hits == 1 && !own_path) known += bounced.light * reflected_share;
+  const vec3 arriving = lit ? point.medium_transmittance : vec3(0.0);
+  finish(slot, known * arriving, waiting * arriving, hit.t, own_path ? 1.0 : 0.0);
+}

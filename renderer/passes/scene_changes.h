@@ -1,0 +1,41 @@
+// What changed in a view's scene since its last frame, as far as it matters to the light that earlier frames have
+// found.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "renderer/scene/pose.h"
+
+namespace lightwell {
+
+struct SceneChange {
+  bool moving = false;  // something: an instance, a light
+  /// How much of the light has changed at once, [0, 1]: lamps that are switched, an environment or a material
+  /// exchanged.
+  float light_share = 0.0f;
+};
+
+class SceneChanges {
+ public:
+  /// What is different from the scene of the last call.
+  SceneChange look_at(const Scene& scene, const Pose& pose);
+
+ private:
+  struct Placed {
+    std::shared_ptr<const Primitive> primitive;
+    glm::mat4 world_from_object;
+    std::shared_ptr<const DeformedVertices> deformed;
+    int material;
+    bool operator==(const Placed&) const = default;
+  };
+  struct State {
+    std::vector<Placed> instances;
+    std::vector<PlacedLight> lights;
+    std::vector<Material> materials;
+    Environment environment;
+  };
+  std::optional<State> before_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,100 @@
+// From one real pixel of each patch: rays sampled by the BRDF, each with what its light counts for (f cos(theta) / pdf over
+// the directional albedo), and a sample of the lights that have a size, weighted against those rays (Veach 1997).
+// HAS_SIZED_LIGHTS: there are such lights in the table.
+layout(local_size_x = 64) in;
+
+#include "passes/bindings.glsl"
+#include "shaders/packing.glsl"
+#include "shaders/sampling.glsl"
+#include "shaders/brdf.glsl"
+#include "shaders/camera.glsl"
+#include "shaders/g_buffer.glsl"
+#include "shaders/ray.glsl"
+#include "shaders/patch_samples.glsl"
+#ifdef HAS_SIZED_LIGHTS
+#include "shaders/scene_data.glsl"
+#ifdef HAS_TEXTURES
+#include "shaders/textures.glsl"
+#endif
+#include "shaders/lights.glsl"
+#include "shaders/environment.glsl"
+#include "shaders/light_sampling.glsl"
+#include "shaders/next_event.glsl"
+#endif
+
+layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { Ray rays[]; };
+layout(std430, binding = BINDING_SAMPLE_STATES) writeonly buffer States { vec4 states[]; };  // weight; density
+layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
+
+uniform uint sample_count;  // texels * rays_per_texel
+
+struct SurfaceFrame {
+  GBufferPoint point;
+  Brdf brdf;           // in the frame
+  mat3 frame;          // its third axis is the normal
+  vec3 out_direction;
+  vec3 albedo;         // what the map is demodulated by
+};
+
+// Light that passes the surface comes from below both normals, what is reflected from above both.
+bool sides_agree(SurfaceFrame at, vec3 in_direction, vec3 in_ws) {
+  return (dot(in_ws, at.point.geometric_normal_ws) < 0.0) == (in_direction.z < 0.0);
+}
+
+vec3 lifted_origin(SurfaceFrame at, bool below) {
+  const vec3 lift_ws = at.point.geometric_normal_ws * ray_offset_m(at.point);
+  return at.point.position_ws + (below ? -lift_ws : lift_ws);
+}
+
+void sample_direction(uint slot, uint ray, uint texel_seed, SurfaceFrame at) {
+  const uint number = sample_number(ray);
+  const vec2 u = sobol_2d(number, decision_seed(texel_seed, kDecisionRay));
+  const float u_lobe = sobol_1d(number, decision_seed(texel_seed, kDecisionLobe));
+  const vec3 in_direction = sample_brdf(at.brdf, at.out_direction, u, u_lobe);
+  const vec3 in_ws = normalize(at.frame * in_direction);
+  const float pdf = brdf_pdf(at.brdf, at.out_direction, in_direction);
+  const bool active_ray = at.point.valid && pdf > 0.0 && sides_agree(at, in_direction, in_ws);
+  const vec3 value = brdf_times_cosine(at.brdf, at.out_direction, in_direction) / at.albedo;
+  rays[slot] = Ray(lifted_origin(at, in_direction.z < 0.0), 0.0, in_ws, active_ray ? 1e30 : -1.0);
+  states[slot] = vec4(active_ray ? value / max(pdf, 1e-20) : vec3(0.0), pdf);
+}
+
+#ifdef HAS_SIZED_LIGHTS
+// Its place among the shadow rays is behind those of the hits.
+void sample_lamp(uint texel_index, uint texel_seed, SurfaceFrame at) {
+  const uint lamp_seed = decision_seed(texel_seed, kDecisionLamp);
+  const vec2 u = sobol_2d(frame_number, lamp_seed);
+  const vec2 u_choice = sobol_2d(frame_number, decision_seed(texel_seed, kDecisionLampChoice));
+  const TableSample lamp = sample_sized_light(at.point.position_ws, u, u_choice.x, u_choice.y);
+  const vec3 in_direction = lamp.to_light_ws * at.frame;
+  const float rays_pdf = brdf_pdf(at.brdf, at.out_direction, in_direction) * float(rays_per_texel);
+  vec3 value = vec3(0.0);
+  if (at.point.valid && lamp.pdf > 0.0 && sides_agree(at, in_direction, lamp.to_light_ws))
+    value = brdf_times_cosine(at.brdf, at.out_direction, in_direction) / at.albedo * lamp.value *
+            mis_weight(lamp.pdf, rays_pdf);
+  Ray ray = kNoRay;
+  if (greatest(value) > 0.0) ray = shadow_ray(lifted_origin(at, in_direction.z < 0.0), at.point.position_ws, lamp);
+  shadow_rays[sample_count + texel_index] = ray;
+  light[2u * sample_count + texel_index] = vec4(value, 0.0);
+}
+#endif
+
+void main() {
+  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  if (slot >= sample_count) return;
+  const uint texels = uint(map_size_px.x * map_size_px.y);
+  const uint texel_index = slot % texels;
+  const ivec2 texel = ivec2(texel_index % uint(map_size_px.x), texel_index / uint(map_size_px.x));
+  SurfaceFrame at;
+  at.point = g_buffer_point(sampled_pixel(texel));
+  at.frame = frame_around(at.point.normal_ws);
+  at.out_direction = at.point.to_camera_ws * at.frame;
+  at.brdf = brdf_in_frame(at.point.brdf, at.frame);
+  at.albedo = max(directional_albedo(at.point.brdf, max(at.out_direction.z, 0.0)), vec3(1e-4));
+  const uint seed_of_texel = texel_seed(texel);
+  sample_direction(slot, slot / texels, seed_of_texel, at);
+#ifdef HAS_SIZED_LIGHTS
+  if (slot < texels) sample_lamp(texel_index, seed_of_texel, at);
+#endif
+}

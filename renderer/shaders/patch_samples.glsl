@@ -1,0 +1,26 @@
+// The indirect map of `realtime`: a texel stands for a patch of the picture, and in every frame another real pixel of the
+// patch stands for the texel. Ray j of texel i lies in slot j * texels + i. Needs sampling, camera.
+
+uniform ivec2 map_size_px;
+uniform vec2 pixels_per_texel;
+uniform uint rays_per_texel;
+uniform uint frame_number;
+uniform uint seed;
+
+uint texel_seed(ivec2 texel) { return hash(uvec3(texel, seed)); }
+
+// The points of a frame lie as the R2 sequence (Roberts 2018), from a start of each texel's own.
+ivec2 sampled_pixel(ivec2 texel) {
+  const uint bits = hash(texel_seed(texel) ^ 0x2545f491u);
+  const uvec2 point = uvec2(bits, hash(bits)) + frame_number * uvec2(0xc13fa9aau, 0x91e10da6u);
+  const vec2 within = vec2(unit_interval(point.x), unit_interval(point.y));
+  return min(ivec2((vec2(texel) + within) * pixels_per_texel), camera.size_px.xy - 1);
+}
+
+uint sample_number(uint ray) { return frame_number * rays_per_texel + ray; }
+
+// Every decision of a texel's paths has a Sobol sequence of its own.
+const uint kDecisionRay = 1u, kDecisionLobe = 2u, kDecisionLamp = 3u, kDecisionLampChoice = 4u;
+const uint kDecisionsAtHit = 5u, kDecisionsAtNextHit = 11u;
+const uint kLight = 0u, kLightChoice = 1u, kDirection = 2u, kCell = 3u;  // at a hit
+uint decision_seed(uint texel_seed, uint decision) { return texel_seed + decision * 0x9e3779b9u; }
