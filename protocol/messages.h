@@ -207,6 +207,7 @@ struct Ack {
   std::uint32_t frame = 0;                                  // the frame's id
   std::optional<double> received_ms, decoded_ms, shown_ms;  // the client's clock
   std::uint32_t queue = 0;                                  // frames waiting to be shown
+  std::optional<double> held_ms;                            // how long the client kept this to itself: nobody looked
 
   bool operator==(const Ack&) const = default;
 };

@@ -31,6 +31,7 @@ void read_message(ObjectReader& object, Ack& out) {
   object.optional("decoded_ms", out.decoded_ms, read_any_number);
   object.optional("shown_ms", out.shown_ms, read_any_number);
   object.with_default("queue", out.queue, read_u32);
+  object.optional("held_ms", out.held_ms, read_any_number);
 }
 
 void read_message(ObjectReader& object, Ping& out) {

@@ -85,6 +85,7 @@ struct MessageWriter {
     give(object, "received_ms", ack.received_ms, number);
     give(object, "decoded_ms", ack.decoded_ms, number);
     give(object, "shown_ms", ack.shown_ms, number);
+    give(object, "held_ms", ack.held_ms, number);
     return object;
   }
 

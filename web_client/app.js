@@ -169,7 +169,7 @@ async function refused(message) {
 
 function frame_done(frame, times) {
   const { header } = frame;
-  if (document.hidden) held_acks.push(ack(header.frame, times));  // the server stops when nobody looks
+  if (document.hidden) held_acks.push([header.frame, times, performance.now()]);  // the server stops: nobody looks
   else connection.send(ack(header.frame, times));
   if (times.shown_ms === undefined) return;
   model.frame_shown(header);
@@ -188,7 +188,9 @@ addEventListener("pagehide", (event) => {
 document.addEventListener("visibilitychange", () => {
   connection.set_paused(document.hidden);
   if (document.hidden) return;
-  held_acks.forEach((ack) => connection.send(ack));
+  for (const [frame, times, since_ms] of held_acks) {
+    connection.send(ack(frame, { ...times, held_ms: performance.now() - since_ms }));
+  }
   held_acks = [];
 });
 

@@ -234,7 +234,7 @@ const client_messages = {
     { device_pixel_ratio: number(0, 16, true), role, resume: nullable(token) }),
   input: object({ type: any, seq: sequence }, change),
   ack: object({ type: any, frame: sequence },
-    { received_ms: number(), decoded_ms: number(), shown_ms: number(), queue: u32 }),
+    { received_ms: number(), decoded_ms: number(), shown_ms: number(), queue: u32, held_ms: number() }),
   ping: object({ type: any, t: number() }),
 };
 

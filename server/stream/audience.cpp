@@ -41,6 +41,13 @@ bool Audience::wants_picture(int in_the_making) const {
   });
 }
 
+LinkPace Audience::pace() const {
+  const auto all = viewers();
+  const auto driver = std::find_if(all.begin(), all.end(), [](const auto& viewer) { return viewer->drives(); });
+  if (driver != all.end()) return (*driver)->pace();
+  return all.empty() ? LinkPace() : all.front()->pace();
+}
+
 void Audience::show(std::shared_ptr<const Picture> picture) {
   {
     std::lock_guard lock(mutex_);

@@ -22,6 +22,9 @@ class Audience {
   /// Whether someone watches who has fewer pictures on the way, with `in_the_making` that all will get, than may be.
   bool wants_picture(int in_the_making) const;
 
+  /// The link that pictures are made for: the driver's, or of whoever came first. What others cannot take they skip.
+  LinkPace pace() const;
+
   /// Gives everyone a picture, unless a newer one came before.
   void show(std::shared_ptr<const Picture> picture);
   /// `by`: the viewer whose input `seq` it was, or null.

@@ -1,5 +1,6 @@
 #include "server/stream/director.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "server/convert.h"
@@ -18,14 +19,14 @@ constexpr int kSmallPicture = 256 * 256;                       // pixels: halved
 }  // namespace
 
 Director::Director(std::shared_ptr<DirectedSession> session, WorkerPool& encoders, const DirectorOptions& options)
-    : session_(std::move(session)), encoders_(encoders), options_(options) {}
+    : session_(std::move(session)), encoders_(encoders), options_(options), grader_(options.quality) {}
 
 SteadyTime Director::due_at(SteadyTime now) {
   const std::shared_ptr<const SessionState> state = session_->state();
   if (state->revision == failed_revision_) return kNever;  // it would fail again
   if (now < retry_at_) return retry_at_;
   if (!session_->audience().wants_picture(in_the_making_)) return kNever;
-  const SteadyTime next_frame = take_.start + options_.least_frame_time;
+  const SteadyTime next_frame = take_.start + std::max(options_.least_frame_time, take_.grade.interval);
   if (!take_.state || state->revision != take_.state->revision)
     return take_.kind == Kind::kFresh ? next_frame : now;  // refining gives way at once
   if (state->moving()) return next_frame;
@@ -64,7 +65,8 @@ Result<Shot> Director::take_fresh_shot() {
   in_reference_ = false;
   FrameRequest request;
   request.time_s = state.clock.time_s(take_.start);
-  request.size_px = state.size_px;
+  take_.grade = choose_grade();
+  request.size_px = take_.grade.scaled(state.size_px);
   request.settings = state.settings;
   auto camera = state.stage->place(state.camera, request.time_s, state.aspect_ratio());
   if (!camera) return invalid_input(camera.problem().pointer, camera.problem().detail);
@@ -75,8 +77,19 @@ Result<Shot> Director::take_fresh_shot() {
   return Shot{state.stage->scene(), std::move(request)};
 }
 
-/// The very same again, added to what is there. Pictures are shown at every doubling: each then has visibly less noise.
+PictureGrade Director::choose_grade() {
+  const LinkPace pace = session_->audience().pace();
+  std::lock_guard lock(grader_mutex_);
+  return grader_.choose(pace.budget_bytes(), pace.bytes_per_s());
+}
+
+/// The very same again, added to what is there; from the beginning if that was smaller than asked for. Pictures are
+/// shown at every doubling: each then has visibly less noise.
 Shot Director::take_refining_shot() {
+  if (take_.request.size_px != take_.state->size_px) {
+    take_.request.size_px = take_.state->size_px;
+    accumulated_ = 0;
+  }
   const std::uint32_t frames = accumulated_ + 1;
   take_.is_final = frames >= frames_wanted();
   const bool too_noisy = in_reference_ && frames < kFewestReferenceFrames;
@@ -123,9 +136,14 @@ void Director::encode(Frame frame) {
 void Director::show(const Take& take, const Frame& frame, std::uint64_t number) {
   const SteadyTime start = steady_clock::now();
   const bool moving = take.kind == Kind::kFresh && frame.size_px.x * frame.size_px.y > kSmallPicture;
-  auto file = encode_jpeg(frame.display_rgbx, frame.size_px, take.is_final ? options_.final_quality : options_.quality,
-                          moving ? Chroma::kHalved : Chroma::kFull);
+  auto file =
+      encode_jpeg(frame.display_rgbx, frame.size_px, take.is_final ? options_.final_quality : take.grade.quality,
+                  moving ? Chroma::kHalved : Chroma::kFull);
   if (!file) return session_->audience().report(problem_of(file.error()));
+  if (take.kind == Kind::kFresh) {
+    std::lock_guard lock(grader_mutex_);
+    grader_.made(take.grade, static_cast<double>(file->size()), frame.total_ms * 1e-3);
+  }
 
   auto picture = std::make_shared<Picture>();
   picture->number = number;

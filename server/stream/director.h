@@ -3,10 +3,12 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 
 #include "server/render/subject.h"
 #include "server/session/session_state.h"
 #include "server/stream/audience.h"
+#include "server/stream/picture_grade.h"
 #include "server/worker_pool.h"
 
 namespace lightwell {
@@ -51,6 +53,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
     Kind kind = Kind::kFresh;
     std::shared_ptr<const SessionState> state;
     FrameRequest request;
+    PictureGrade grade;
     SteadyTime start{};
     bool shown = true;  // or only added to what the next one shows
     bool is_final = false;
@@ -60,6 +63,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   std::uint32_t frames_wanted() const;
   Result<Shot> take_fresh_shot();
   Shot take_refining_shot();
+  PictureGrade choose_grade();
   void encode(Frame frame);
   void show(const Take& take, const Frame& frame, std::uint64_t number);
 
@@ -68,6 +72,8 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   const DirectorOptions options_;
 
   Take take_;
+  std::mutex grader_mutex_;
+  PictureGrader grader_;
   SteadyTime still_since_{};       // the last picture that showed a change
   std::uint32_t accumulated_ = 0;  // frames in the picture
   bool in_reference_ = false;      // the picture is made by the method reference, whatever the session's is

@@ -113,8 +113,7 @@ void Viewer::received(const protocol::Ack& ack) {
     if (ack.frame > last_frame_)
       return queue_end(protocol::CloseCode::kBadMessage, "an ack of a frame that was never sent", false);
     for (; !in_flight_.empty() && in_flight_.front().frame <= ack.frame; in_flight_.pop_front())
-      if (in_flight_.front().frame == ack.frame)
-        host_->picture_acknowledged(std::chrono::duration<double>(steady_clock::now() - in_flight_.front().at).count());
+      if (in_flight_.front().frame == ack.frame) note_arrival(in_flight_.front(), ack, steady_clock::now());
     if (waiting_) wake();
   }
   host_->window_opened();
@@ -172,6 +171,16 @@ void Viewer::end(protocol::CloseCode code, const std::string& reason, bool recon
 int Viewer::pictures_on_the_way() const {
   std::lock_guard lock(mutex_);
   return static_cast<int>(in_flight_.size()) + (waiting_ ? 1 : 0);
+}
+
+LinkPace Viewer::pace() const {
+  std::lock_guard lock(mutex_);
+  return pace_;
+}
+
+bool Viewer::drives() const {
+  std::lock_guard lock(mutex_);
+  return drives_ && stage_ == Stage::kWatching;
 }
 
 bool Viewer::watching() const {
@@ -257,12 +266,24 @@ net::Outgoing Viewer::take_picture() {
   header.height = picture->height;
   header.payload_bytes = static_cast<std::uint32_t>(picture->file->size());
   header.render_ms = static_cast<float>(picture->stats.render_ms);
-  in_flight_.push_back({last_frame_, now});
+  const auto bytes_sent = static_cast<double>(picture->file->size());
+  const double before = in_flight_.empty() ? 0.0 : in_flight_.back().bytes;
+  in_flight_.push_back({last_frame_, now, bytes_sent, before + bytes_sent});
   sent_times_.push_back(now);
   queue_stats(*picture, now);
   host_->picture_sent(picture->file->size());
   const auto bytes = protocol::encode_frame_header(header);
   return net::BinaryMessage{std::string(bytes.begin(), bytes.end()), picture->file};
+}
+
+void Viewer::note_arrival(const Sent& sent, const protocol::Ack& ack, SteadyTime now) {
+  const auto seconds_since = [now](SteadyTime then) { return std::chrono::duration<double>(now - then).count(); };
+  host_->picture_acknowledged(seconds_since(sent.at));
+  if (!ack.held_ms) {
+    const double gap_s = sent.at < last_arrival_ ? seconds_since(last_arrival_) : 0.0;
+    pace_.arrived({sent.bytes, sent.bytes_on_the_way, seconds_since(sent.at), gap_s});
+  }
+  last_arrival_ = now;
 }
 
 void Viewer::note_shown_inputs(std::uint64_t revision) {

@@ -12,6 +12,7 @@
 #include "protocol/codec.h"
 #include "server/net/application.h"
 #include "server/session/session_state.h"
+#include "server/stream/link_pace.h"
 #include "server/stream/picture.h"
 
 namespace lightwell {
@@ -61,6 +62,9 @@ class Viewer : public net::WebSocketHandler {
   /// Says bye and closes.
   void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
 
+  /// What its link takes, as its acknowledgements tell.
+  LinkPace pace() const;
+  bool drives() const;
   /// Pictures that are on their way to the client, or wait to be.
   int pictures_on_the_way() const;
   bool watching() const;
@@ -74,6 +78,8 @@ class Viewer : public net::WebSocketHandler {
   struct Sent {
     std::uint32_t frame;
     SteadyTime at;
+    double bytes = 0.0;
+    double bytes_on_the_way = 0.0;  // with those before it
   };
   struct AppliedInput {
     std::uint64_t revision;
@@ -94,6 +100,7 @@ class Viewer : public net::WebSocketHandler {
   std::string take_state_update();
   std::string take_placement();
   net::Outgoing take_picture();
+  void note_arrival(const Sent& sent, const protocol::Ack& ack, SteadyTime now);
   void note_shown_inputs(std::uint64_t revision);
   void queue_stats(const Picture& picture, SteadyTime now);
   void wake();
@@ -115,6 +122,8 @@ class Viewer : public net::WebSocketHandler {
   std::shared_ptr<const Picture> waiting_;      // the newest picture, not sent yet
   std::shared_ptr<const Placement> placement_;  // sent last
   std::deque<Sent> in_flight_;
+  SteadyTime last_arrival_{};
+  LinkPace pace_;
   std::uint32_t last_frame_ = 0;
   std::uint32_t last_seq_ = 0;        // received
   std::deque<AppliedInput> applied_;  // inputs no picture has shown yet

@@ -1,4 +1,5 @@
 // The server with the renderer of this project behind it, on whatever device there is.
+#include <map>
 #include <numeric>
 
 #include "renderer/image_io/image_io.h"
@@ -69,18 +70,22 @@ json render_request(const json& more = json::object()) {
 TEST_F(RenderedStreamTest, APlayingSceneMoves) {
   StreamClient client(server_->port(), make_session({{"scene", "helicopters"}, {"playing", true}}));
   EXPECT_FALSE(client.hello({{"width", 96}, {"height", 64}})["device"].get<std::string>().empty());
-  std::vector<Image> pictures;
-  while (pictures.size() < 8) {
-    const auto heard = client.next(30s);
+  std::map<int, std::vector<Image>> pictures;  // by width: a machine under load gives resolution up
+  int width = 96;
+  while (pictures[width].size() < 4) {
+    const auto heard = client.next(60s);
     ASSERT_TRUE(heard);
     if (!heard->frame) continue;
     client.ack(heard->frame->frame);
-    pictures.push_back(decoded(heard->payload));
-    EXPECT_EQ(pictures.back().size_px, glm::ivec2(96, 64));
+    const Image picture = decoded(heard->payload);
+    width = picture.size_px.x;
+    EXPECT_LE(width, 96);
+    EXPECT_NEAR(picture.size_px.y, width * 64.0 / 96.0, 1.0);
     EXPECT_GT(heard->frame->render_ms, 0.0f);
+    pictures[width].push_back(picture);
   }
-  EXPECT_GT(mean(pictures.back()), 10.0);
-  EXPECT_GT(mean_difference(pictures.front(), pictures.back()), 0.5);
+  EXPECT_GT(mean(pictures[width].back()), 10.0);
+  EXPECT_GT(mean_difference(pictures[width].front(), pictures[width].back()), 0.5);
 }
 
 TEST_F(RenderedStreamTest, AStillSceneIsRefinedToItsFinalPicture) {

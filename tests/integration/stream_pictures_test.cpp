@@ -170,5 +170,20 @@ TEST_F(StreamPicturesTest, FollowsTheDriversWindow) {
   EXPECT_EQ(frame->height, 60);
 }
 
+TEST_F(StreamPicturesTest, WhatRendersSlowlyMovesInASmallerSizeAndStandsInFull) {
+  studio_->render_ms = 300;
+  StreamClient client(server_.port(), make_session({{"scene", "helicopters"}, {"playing", true}}));
+  client.hello();
+  const auto small = client.frame_where([](const FrameHeader& frame) { return frame.width < 64; });
+  ASSERT_TRUE(small);
+  EXPECT_EQ(small->width, small->height);
+  studio_->render_ms = 1;
+  client.input(1, {{"playing", false}});
+  const auto whole = client.frame_where([](const FrameHeader& frame) { return frame.is_final; });
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->width, 64);
+  EXPECT_EQ(whole->height, 64);
+}
+
 }  // namespace
 }  // namespace lightwell::test
