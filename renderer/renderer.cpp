@@ -203,9 +203,8 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     Settings settings = request.settings;
     // A view of surfaces by `thesis` in another method's place: its bounces, which may be without limit, do not show.
     if (method != settings.method) settings.bounces = std::min(settings.bounces, 1);
-    const glm::vec2 jitter_px = method == Method::kReference  ? glm::vec2(0.0f)  // its paths have one of their own
-                                : method == Method::kRealtime ? pixel_jitter(view.realtime().frame_number())
-                                                              : pixel_jitter(view.accumulated);
+    // The paths of `reference` have a jitter of their own.
+    const glm::vec2 jitter_px = method == Method::kReference ? glm::vec2(0.0f) : pixel_jitter(view.accumulated);
     state_->bind_frame(scene, request, jitter_px);
     state_->timer.mark("scene");
 

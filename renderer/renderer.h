@@ -49,8 +49,8 @@ enum class ToneMap { kNeutral, kLinear };
 /// one of the two alone. All have the same mean.
 enum class LightStrategy { kBoth, kLights, kRays };
 
-/// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` and `realtime`; for the latter 3 and more
-/// are the same, since its radiance cache carries all further bounces.
+/// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` and `realtime`; for the latter 3 and
+/// more are the same, since its radiance cache carries all further bounces.
 constexpr int kUnlimitedBounces = 1 << 20;
 
 /// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kFramesOfSamples = 16;
 
 // While the cache is young all paths go on, to fill it; later one of four.
-constexpr std::uint32_t kFillingFrames = 8, kPathStride = 4;
+constexpr std::uint32_t kFillingFrames = 12, kPathStride = 4;
 
 constexpr float kGreatChange = 0.1f;  // of the light: the cache is filled anew
 
@@ -20,11 +20,12 @@ constexpr float kGreatChange = 0.1f;  // of the light: the cache is filled anew
 // found in the next eight.
 constexpr float kKeptAfterChange = 0.25f;
 
-// What the history counts for, in frames. `age`: frames since the cache began to be filled; while it carries bounces,
-// the first of them hold too little light, so that they are forgotten.
-float kept_frames(const SceneChange& change, bool cache_carries, std::uint32_t age) {
-  constexpr float kInMotion = 24.0f, kStill = 1024.0f, kOfAge = 0.5f;
-  float most = change.moving ? kInMotion : kStill;
+// What the history counts for, in frames. After motion it grows with the time since then, so that what has changed is
+// forgotten; likewise with the age of the cache while this carries bounces, for its first frames hold too little light.
+float kept_frames(const SceneChange& change, bool cache_carries, std::uint32_t since_motion, std::uint32_t age) {
+  constexpr float kInMotion = 24.0f, kStill = 1024.0f, kOfTime = 0.5f, kOfAge = 0.25f;
+  float most =
+      change.moving ? kInMotion : std::min(kStill, 0.5f * kInMotion + kOfTime * static_cast<float>(since_motion));
   if (cache_carries) most = std::min(most, kOfAge * static_cast<float>(age + 1));
   return change.light_share > 0.0f ? std::min(most, kKeptAfterChange / change.light_share) : most;
 }
@@ -43,6 +44,7 @@ RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers
 const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera,
                                       glm::vec2 jitter_px) {
   change_ = changes_.look_at(scene, frame.pose);
+  if (change_.moving) moved_in_ = frame_number_;
   if (change_.light_share > kGreatChange) filled_from_ = frame_number_;
   lights_.prepare(scene, frame.pose);
   lights_.bind();
@@ -82,9 +84,9 @@ ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuff
   // With this frame's jitter, so that what stands still is found exactly where it was.
   const PlacedCamera& before = frame_number_ > 0 ? previous_camera_ : camera;
   const glm::mat4 previous_clip_from_world = make_camera_block(before, frame.size_px, jitter_px).clip_from_world;
-  const ReconstructedMap map =
-      reconstruction_pass_.run(g_buffer, frame.scene, samples, grid, previous_clip_from_world,
-                               kept_frames(change_, frame.settings.bounces > 2, frame_number_ - filled_from_));
+  const ReconstructedMap map = reconstruction_pass_.run(
+      g_buffer, frame.scene, samples, grid, previous_clip_from_world,
+      kept_frames(change_, frame.settings.bounces > 2, frame_number_ - moved_in_, frame_number_ - filled_from_));
   frame.timer.mark("reconstruction");
   return map;
 }

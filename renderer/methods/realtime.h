@@ -20,10 +20,8 @@ class RealtimeMethod {
   /// `buffers`: where rays and hits live; host-visible for a native tracer.
   RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
 
-  /// Frames made so far: the number of the next one. Its picture is to be moved by pixel_jitter of this.
-  std::uint32_t frame_number() const { return frame_number_; }
-
-  /// One frame, with what is known of the frames before. The camera and environment blocks and the scene are bound.
+  /// One frame, with what is known of the frames before. The camera and environment blocks and the scene are bound; the
+  /// picture is moved by `jitter_px` of a pixel.
   const Picture& render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera, glm::vec2 jitter_px);
 
  private:
@@ -40,7 +38,9 @@ class RealtimeMethod {
   ComposePass compose_pass_;
   SceneChanges changes_;
   SceneChange change_;  // in this frame
-  std::uint32_t frame_number_ = 0, filled_from_ = 0;
+  std::uint32_t frame_number_ = 0;
+  std::uint32_t filled_from_ = 0;                     // when the cache began to be filled
+  std::uint32_t moved_in_ = std::uint32_t{0} - 4096;  // when something moved last
   PlacedCamera previous_camera_;
 };
 

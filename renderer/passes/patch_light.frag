@@ -14,7 +14,7 @@ layout(binding = UNIT_SAMPLE_VISIBLE) uniform usamplerBuffer visible;    // a bi
 layout(binding = UNIT_NEXT_STATES) uniform samplerBuffer next_states;    // two a path that went on; first: reflectance
 layout(binding = UNIT_NEXT_LIGHT) uniform samplerBuffer next_light;      // two a path that went on; first: what came
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_map;           // rgb; a: frames in it
-layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance, first and second
+layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance: first, second; of late frames
 layout(binding = UNIT_IMAGE_C) uniform usampler2D previous_guide;        // position, normal and roughness
 
 layout(location = 0) out vec4 out_map;
@@ -33,6 +33,8 @@ uniform int has_history;
 const float kPlaneTolerance = 0.02;  // of the distance from the eye
 const float kLeastCosine = 0.9;
 const float kGreatest = 1e15;
+const float kLateFrames = 6.0;
+const float kMostDeviations = 4.0;   // of the late frames' mean
 
 bool is_visible(uint slot) { return (texelFetch(visible, int(slot / 32u)).x >> (slot & 31u) & 1u) != 0u; }
 
@@ -60,9 +62,23 @@ vec3 light_of_samples(uint texel_index) {
 struct History {
   vec3 light;
   float frames;
-  vec2 moments;
+  vec3 moments;
   float weight;
 };
+
+// Whether late frames differ from all by more than their noise explains, over the texels around: then the light here has
+// changed, and the history counts for less. Of the frames that the history may count for.
+float frames_left_by_change(ivec2 texel, float frames) {
+  float difference = 0.0, variance = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      const vec3 moments = texelFetch(previous_moments, clamp(texel + ivec2(x, y), ivec2(0), map_size_px - 1), 0).xyz;
+      difference += moments.z - moments.x;
+      variance += max(moments.y - moments.x * moments.x, 0.0) / kLateFrames;
+    }
+  const float ratio = difference * difference / max(kMostDeviations * kMostDeviations * variance, 1e-30);
+  return frames > 2.0 * kLateFrames && ratio > 1.0 ? max(kLateFrames / ratio, 1.0) : frames;
+}
 
 void add_tap(inout History history, ivec2 texel, float weight, vec3 position_ws, vec3 normal_ws, float plane_scale) {
   const ivec2 inside = clamp(texel, ivec2(0), map_size_px - 1);
@@ -74,13 +90,13 @@ void add_tap(inout History history, ivec2 texel, float weight, vec3 position_ws,
   if (!same) return;
   history.light += weight * value.rgb;
   history.frames += weight * value.a;
-  history.moments += weight * texelFetch(previous_moments, inside, 0).xy;
+  history.moments += weight * texelFetch(previous_moments, inside, 0).xyz;
   history.weight += weight;
 }
 
 // Of the place where the texel's surface was a frame ago.
 History history_at(GBufferPoint point, vec2 pixel_center, vec2 texel_center) {
-  History history = History(vec3(0.0), 0.0, vec2(0.0), 0.0);
+  History history = History(vec3(0.0), 0.0, vec3(0.0), 0.0);
   const vec4 clip = previous_clip_from_world * vec4(point.position_ws, 1.0);
   const vec2 before_px = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size_px.xy);
   if (has_history == 0 || clip.w <= 0.0) return history;
@@ -121,8 +137,11 @@ void main() {
   const float now_luminance = luminance(now);
   const History history = history_at(point, vec2(pixel) + 0.5, vec2(texel) + 0.5);
   const float share = 1.0 / max(history.weight, 1e-6);
-  const float frames = min(history.weight > 0.0 ? history.frames * share : 0.0, kept_frames);
+  float frames = min(history.weight > 0.0 ? history.frames * share : 0.0, kept_frames);
+  frames = frames_left_by_change(texel, frames);
   const float fresh = 1.0 / (frames + 1.0);
   out_map = vec4(mix(history.light * share, now, fresh), frames + 1.0);
-  out_moments = vec4(mix(history.moments * share, vec2(now_luminance, now_luminance * now_luminance), fresh), 0.0, 0.0);
+  out_moments.xy = mix(history.moments.xy * share, vec2(now_luminance, now_luminance * now_luminance), fresh);
+  out_moments.z = mix(history.moments.z * share, now_luminance, max(fresh, 1.0 / kLateFrames));
+  out_moments.w = 0.0;
 }

@@ -16,12 +16,12 @@ constexpr float kFinestOfScene = 1.0f / 65536.0f;  // the finest cell's side ove
 constexpr float kLeastOfScene = 1.0f / 128.0f;     // the least usual side over the scene's diagonal
 constexpr float kLeastUsual_m = 0.08f;             // and in large scenes
 constexpr float kMostSamples = 256.0f;
-constexpr float kForgettingInMotion = 0.09f, kMostForgetting = 2.0f;  // halvings a frame
+constexpr float kForgettingInMotion = 0.09f, kMostForgetting = 3.0f;  // halvings a frame
 // Of all halvings over a time and its double, whatever the time: what a young cache holds is too dark, since every
 // bounce builds on what was known of the one before.
-constexpr float kForgettingOfAge = 12.0f;
-constexpr float kKeptAfterChange = 0.5f;  // samples, after as great a change of light as there is
-constexpr std::uint32_t kPatience = 96;   // frames that a cell is kept without samples
+constexpr float kForgettingOfAge = 40.0f;
+constexpr float kKeptAfterChange = 0.02f;  // samples, after as great a change of light as there is
+constexpr std::uint32_t kPatience = 96;    // frames that a cell is kept without samples
 constexpr std::uint32_t kForgetParts = 32;
 constexpr std::uint32_t kLongAgo = 0xffffu;
 

@@ -8,7 +8,7 @@ namespace lightwell {
 
 namespace {
 
-constexpr float kLuminanceTolerance = 4.0f;  // standard deviations
+constexpr float kLuminanceTolerance = 6.0f;  // standard deviations
 
 gl::ProgramPtr filter_step(gl::ShaderLibrary& shaders, const gl::Defines& defines) {
   return shaders.raster("passes/full_screen.vert", "passes/patch_filter.frag", defines);

@@ -39,6 +39,27 @@ float change_of(const Environment& a, const Environment& b) {
                    relative_difference(a.ground_radiance * a.strength, b.ground_radiance * b.strength)});
 }
 
+glm::vec3 center_of(const SceneChanges::Placed& placed) {
+  const Primitive& primitive = *placed.primitive;
+  return glm::vec3(placed.world_from_object * glm::vec4(0.5f * (primitive.bounds_min + primitive.bounds_max), 1.0f));
+}
+
+// What moves by more than half its size at once was not on its way: where it was and where it is, the light is another.
+float jump_of(const SceneChanges::Placed& before, const SceneChanges::Placed& now) {
+  const glm::vec3 size =
+      glm::vec3(glm::mat3(now.world_from_object) * (now.primitive->bounds_max - now.primitive->bounds_min));
+  const float way_m = glm::distance(center_of(before), center_of(now));
+  return glm::clamp(2.0f * way_m / std::max(glm::length(size), 1e-6f) - 1.0f, 0.0f, 1.0f);
+}
+
+float change_of(const std::vector<SceneChanges::Placed>& before, const std::vector<SceneChanges::Placed>& now) {
+  if (before.size() != now.size()) return 1.0f;
+  float change = 0.0f;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    change = std::max(change, before[i].primitive == now[i].primitive ? jump_of(before[i], now[i]) : 1.0f);
+  return change;
+}
+
 // All the light that bounces depends on every surface: how much, nobody knows beforehand.
 float change_of(const std::vector<Material>& before, const std::vector<Material>& now) {
   return before == now ? 0.0f : 1.0f;
@@ -58,7 +79,7 @@ SceneChange SceneChanges::look_at(const Scene& scene, const Pose& pose) {
         !std::equal(before_->lights.begin(), before_->lights.end(), now.lights.begin(), now.lights.end(), same_place);
     change.light_share =
         std::max({change_of(before_->lights, now.lights), change_of(before_->environment, now.environment),
-                  change_of(before_->materials, now.materials)});
+                  change_of(before_->materials, now.materials), change_of(before_->instances, now.instances)});
   }
   before_ = std::move(now);
   return change;

@@ -18,10 +18,7 @@ struct SceneChange {
 
 class SceneChanges {
  public:
-  /// What is different from the scene of the last call.
-  SceneChange look_at(const Scene& scene, const Pose& pose);
-
- private:
+  /// An instance, as far as it is compared.
   struct Placed {
     std::shared_ptr<const Primitive> primitive;
     glm::mat4 world_from_object;
@@ -29,6 +26,11 @@ class SceneChanges {
     int material;
     bool operator==(const Placed&) const = default;
   };
+
+  /// What is different from the scene of the last call.
+  SceneChange look_at(const Scene& scene, const Pose& pose);
+
+ private:
   struct State {
     std::vector<Placed> instances;
     std::vector<PlacedLight> lights;
