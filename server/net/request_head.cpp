@@ -198,8 +198,13 @@ class HeadParser {
     if (lengths != 0 && encodings != 0) return refuse(400, "both Content-Length and Transfer-Encoding");
     if (encodings != 0) {
       if (head_.minor_version == 0) return refuse(400, "HTTP/1.0 has no Transfer-Encoding");
-      if (encodings > 1 || lower(head_.field("transfer-encoding")) != "chunked")
-        return refuse(501, "the only Transfer-Encoding taken is chunked");
+      std::string codings;
+      for (const HeaderField& field : head_.fields)
+        if (field.name == "transfer-encoding") codings += (codings.empty() ? "" : ",") + lower(field.value);
+      const auto chunked = codings.find("chunked");
+      if (chunked != codings.npos && chunked + std::string_view("chunked").size() != codings.size())
+        return refuse(400, "chunked is not the last Transfer-Encoding, or applied twice");  // RFC 9112, 6.1 and 6.3
+      if (codings != "chunked") return refuse(501, "the only Transfer-Encoding taken is chunked");
       head_.framing = Framing::kChunked;
     }
     if (lengths != 0) return read_length(head_.field("content-length"));

@@ -1,5 +1,6 @@
 #include "server/net/web_socket.h"
 
+#include <algorithm>
 #include <array>
 
 #include <boost/asio/co_spawn.hpp>
@@ -37,6 +38,18 @@ http::request<http::empty_body> handshake_request(const RequestHead& head) {
   request.set(http::field::sec_websocket_key, boost::string_view(key.data(), key.size()));
   request.set(http::field::sec_websocket_version, "13");
   return request;
+}
+
+/// Whether a text that is good UTF-8 otherwise ends within a character. Beast looks at the last bytes of a message only
+/// if its last frame has any.
+bool ends_within_character(std::string_view text) {
+  for (std::size_t back = 1; back <= std::min<std::size_t>(text.size(), 3); ++back) {
+    const auto byte = static_cast<unsigned char>(text[text.size() - back]);
+    if ((byte & 0xc0) == 0x80) continue;
+    const std::size_t length = byte >= 0xf0 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc0 ? 2 : 1;
+    return length > back;
+  }
+  return false;
 }
 
 template <class Stream>
@@ -107,20 +120,23 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
       do {
         co_await stream_.async_read_some(buffer, kReadBytes, asio::redirect_error(asio::use_awaitable, error));
         if (error) co_return;  // closed, broken or silent: Beast has told the peer which
-        if (buffer.size() > admission_.max_message_bytes) {
-          co_await stream_.async_close(websocket::close_code::too_big,
-                                       asio::redirect_error(asio::use_awaitable, error));
-          co_return;
-        }
+        if (buffer.size() > admission_.max_message_bytes) co_return co_await fail(websocket::close_code::too_big);
       } while (!stream_.is_message_done());
       const auto data = buffer.data();
       const std::string_view bytes(static_cast<const char*>(data.data()), data.size());
+      if (stream_.got_text() && ends_within_character(bytes))
+        co_return co_await fail(websocket::close_code::bad_payload);
       if (stream_.got_text())
         admission_.handler->received_text(bytes);
       else
         admission_.handler->received_binary(bytes);
       buffer.clear();
     }
+  }
+
+  asio::awaitable<void> fail(websocket::close_code code) {
+    error_code ignored;
+    co_await stream_.async_close(code, asio::redirect_error(asio::use_awaitable, ignored));
   }
 
   asio::awaitable<void> write_messages(std::shared_ptr<WebSocketConnection> self) {

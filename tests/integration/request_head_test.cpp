@@ -90,7 +90,8 @@ TEST(RequestHead, WantsOneClearFraming) {
         "Content-Length: 1\r\nTransfer-Encoding: chunked"})
     EXPECT_EQ(status_with(field), 400) << field;
   EXPECT_EQ(status_with("Transfer-Encoding: gzip, chunked"), 501);
-  EXPECT_EQ(status_with("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"), 501);
+  EXPECT_EQ(status_with("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"), 400);
+  EXPECT_EQ(status_with("Transfer-Encoding: chunked, gzip"), 400);
   EXPECT_EQ(status_with("Content-Encoding: gzip"), 415);
   EXPECT_EQ(status_with("Expect: a miracle"), 417);
   EXPECT_EQ(status_of("POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n"), 400);
