@@ -31,11 +31,13 @@ struct ServeLimits {
   double session_idle_s = 600.0;                   // a session without viewers or requests ends after this
 };
 
-/// What a session starts with unless told otherwise: two bounces, filtered; made to be looked at, not to be the thesis.
+/// What a session starts with unless told otherwise: two bounces, filtered, small patches; made to be looked at, not to
+/// be the thesis.
 inline Settings viewing_settings() {
   Settings settings;
   settings.bounces = 2;
   settings.denoise = true;
+  settings.patch = 2;
   return settings;
 }
 

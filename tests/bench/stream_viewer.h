@@ -52,7 +52,8 @@ class Viewer {
   };
 
   /// `port`: the server's, or of a line to it.
-  Viewer(int port, bool playing);
+  /// `patch`: side of the thesis' patches; a server's sessions begin with 2.
+  Viewer(int port, bool playing, int patch = 2);
 
   /// None if none comes in time.
   std::optional<Seen> frame_within(std::chrono::milliseconds limit);
