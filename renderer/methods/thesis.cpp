@@ -8,7 +8,7 @@ namespace lightwell {
 namespace {
 
 // Records of the occlusion map at once, and candidates of patches: 32 to 96 MiB on the device, whatever the settings.
-constexpr std::uint32_t kMostRecords = 1u << 20, kMostCandidates = 1u << 22;
+constexpr std::uint32_t kMostRecords = 1u << 21, kMostCandidates = 1u << 22;
 
 // Every pixel may turn out to be a patch of its own, beside those of the map.
 std::uint32_t most_patches(const IndirectMapGrid& grid, const Settings& settings) {

@@ -1,5 +1,6 @@
 #include "renderer/tracing/embree/candidates.h"
 
+#include <cstring>
 #include <limits>
 
 namespace lightwell {
@@ -20,48 +21,71 @@ struct AffineTriangle {
   glm::vec3 corner, u, v, t;
 };
 
+// Four lanes at a time, which every processor of this kind has. A run is not a multiple of four: what is written beyond
+// its end belongs to the next run, which writes all its lanes anew, or to the padding.
+constexpr std::uint32_t kWidth = 4;
+using Float4 = float __attribute__((vector_size(16)));
+using Uint4 = std::uint32_t __attribute__((vector_size(16)));
+
+template <class Vector, class Scalar>
+Vector load(const Scalar* from) {
+  Vector vector;
+  std::memcpy(&vector, from, sizeof vector);
+  return vector;
+}
+template <class Vector, class Scalar>
+void store(Scalar* to, Vector vector) {
+  std::memcpy(to, &vector, sizeof vector);
+}
+
 struct Lanes {
-  using Floats = std::array<float, kChunkPixels>;
-  alignas(64) Floats x, y, z;                 // PixelOrigin::above_ws
-  alignas(64) Floats down_x, down_y, down_z;  // PixelOrigin::down_ws
-  alignas(64) Floats from_x, from_y, from_z;  // origins of the rays of the direction at hand
-  alignas(64) Floats t, u, v;                 // nearest so far
-  alignas(64) Floats new_t, new_u, new_v;     // of the candidate at hand; new_t is kNothing where it is not met
-  alignas(64) std::array<std::uint32_t, kChunkPixels> instance, triangle;
+  using Floats = std::array<float, kChunkPixels + kWidth>;
+  using Numbers = std::array<std::uint32_t, kChunkPixels + kWidth>;
+  Floats x, y, z;                 // PixelOrigin::above_ws
+  Floats down_x, down_y, down_z;  // PixelOrigin::down_ws
+  Floats from_x, from_y, from_z;  // origins of the rays of the direction at hand
+  Floats t, u, v;                 // nearest so far
+  Floats new_t, new_u, new_v;     // of the candidate at hand; new_t is kNothing where it is not met
+  Numbers instance, triangle;
 };
 
-[[gnu::always_inline]] inline void place_origins(Lanes& l, std::uint32_t begin, std::uint32_t end, glm::vec3 d) {
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const float below = l.down_x[i] * d.x + l.down_y[i] * d.y + l.down_z[i] * d.z > 0.0f ? 1.0f : 0.0f;
-    l.from_x[i] = l.x[i] + below * l.down_x[i];
-    l.from_y[i] = l.y[i] + below * l.down_y[i];
-    l.from_z[i] = l.z[i] + below * l.down_z[i];
-    l.t[i] = kNothing;
+void place_origins(Lanes& l, const Run& run, glm::vec3 d) {
+  const Float4 zero = {}, nothing = zero + kNothing;
+  for (std::uint32_t i = run.begin; i < run.end; i += kWidth) {
+    const auto x = load<Float4>(&l.down_x[i]), y = load<Float4>(&l.down_y[i]), z = load<Float4>(&l.down_z[i]);
+    const auto below = x * d.x + y * d.y + z * d.z > zero;
+    store(&l.from_x[i], load<Float4>(&l.x[i]) + (below ? x : zero));
+    store(&l.from_y[i], load<Float4>(&l.y[i]) + (below ? y : zero));
+    store(&l.from_z[i], load<Float4>(&l.z[i]) + (below ? z : zero));
+    store(&l.t[i], nothing);
   }
 }
 
-[[gnu::always_inline]] inline void meet(Lanes& l, std::uint32_t begin, std::uint32_t end, const AffineTriangle& a) {
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const float x = l.from_x[i] - a.corner.x, y = l.from_y[i] - a.corner.y, z = l.from_z[i] - a.corner.z;
-    const float u = x * a.u.x + y * a.u.y + z * a.u.z;
-    const float v = x * a.v.x + y * a.v.y + z * a.v.z;
-    const float t = x * a.t.x + y * a.t.y + z * a.t.z;
-    const bool met = (u >= -kEdgeTolerance) & (v >= -kEdgeTolerance) & (u + v <= 1.0f + kEdgeTolerance) & (t > 0.0f);
-    l.new_t[i] = met ? t : kNothing;
-    l.new_u[i] = std::max(u, 0.0f);
-    l.new_v[i] = std::max(v, 0.0f);
+void meet(Lanes& l, const Run& run, const AffineTriangle& a) {
+  const Float4 zero = {}, nothing = zero + kNothing, least = zero - kEdgeTolerance, most = zero + 1.0f + kEdgeTolerance;
+  for (std::uint32_t i = run.begin; i < run.end; i += kWidth) {
+    const Float4 x = load<Float4>(&l.from_x[i]) - a.corner.x, y = load<Float4>(&l.from_y[i]) - a.corner.y;
+    const Float4 z = load<Float4>(&l.from_z[i]) - a.corner.z;
+    const Float4 u = x * a.u.x + y * a.u.y + z * a.u.z;
+    const Float4 v = x * a.v.x + y * a.v.y + z * a.v.z;
+    const Float4 t = x * a.t.x + y * a.t.y + z * a.t.z;
+    const auto met = (u >= least) & (v >= least) & (u + v <= most) & (t > zero);
+    store(&l.new_t[i], met ? t : nothing);
+    store(&l.new_u[i], u > zero ? u : zero);
+    store(&l.new_v[i], v > zero ? v : zero);
   }
 }
 
-[[gnu::always_inline]] inline void keep_nearer(Lanes& l, std::uint32_t begin, std::uint32_t end, std::uint32_t instance,
-                                               std::uint32_t triangle) {
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const bool nearer = l.new_t[i] < l.t[i];
-    l.t[i] = nearer ? l.new_t[i] : l.t[i];
-    l.u[i] = nearer ? l.new_u[i] : l.u[i];
-    l.v[i] = nearer ? l.new_v[i] : l.v[i];
-    l.instance[i] = nearer ? instance : l.instance[i];
-    l.triangle[i] = nearer ? triangle : l.triangle[i];
+void keep_nearer(Lanes& l, const Run& run, std::uint32_t instance, std::uint32_t triangle) {
+  const Uint4 instances = Uint4{} + instance, triangles = Uint4{} + triangle;
+  for (std::uint32_t i = run.begin; i < run.end; i += kWidth) {
+    const auto t = load<Float4>(&l.t[i]), new_t = load<Float4>(&l.new_t[i]);
+    const auto nearer = new_t < t;
+    store(&l.t[i], nearer ? new_t : t);
+    store(&l.u[i], nearer ? load<Float4>(&l.new_u[i]) : load<Float4>(&l.u[i]));
+    store(&l.v[i], nearer ? load<Float4>(&l.new_v[i]) : load<Float4>(&l.v[i]));
+    store(&l.instance[i], nearer ? instances : load<Uint4>(&l.instance[i]));
+    store(&l.triangle[i], nearer ? triangles : load<Uint4>(&l.triangle[i]));
   }
 }
 
@@ -79,6 +103,7 @@ class Chunk {
   Chunk(const EmbreeScene& scene, const MappedCandidateTest& mapped, HitListWriter& list, std::uint32_t begin,
         std::uint32_t end)
       : scene_(scene), mapped_(mapped), list_(list), first_(begin), count_(end - begin) {
+    lanes_ = {};  // what lies beyond the last run is computed with, too
     for (std::uint32_t i = 0; i < count_; ++i) {
       const PixelOrigin& pixel = mapped.pixels[begin + i];
       lanes_.x[i] = pixel.above_ws.x, lanes_.y[i] = pixel.above_ws.y, lanes_.z[i] = pixel.above_ws.z;
@@ -104,7 +129,7 @@ class Chunk {
     const CandidateTest& test = mapped_.test;
     const std::size_t ray = std::size_t{direction} * test.patch_count + run.patch_index;
     const glm::vec3 along(mapped_.directions[ray]);
-    place_origins(lanes_, run.begin, run.end, along);
+    place_origins(lanes_, run, along);
     bool had_any = false;
     for (std::uint32_t group = 0; group < test.group_count; ++group) {
       const Hit& candidate = mapped_.candidates[std::size_t{group} * test.direction_count * test.patch_count + ray];
@@ -112,20 +137,20 @@ class Chunk {
       had_any = true;
       try_candidate(run, candidate.instance, candidate.triangle * test.group_count + group, along);
     }
-    store(run, direction, along, had_any && test.trace_missed);
+    store_hits(run, direction, along, had_any && test.trace_missed);
   }
 
   void try_candidate(const Run& run, std::uint32_t instance, std::uint32_t triangle, glm::vec3 along) {
     const AffineTriangle affine = affine_triangle(scene_.corners_ws(instance, triangle), along);
-    meet(lanes_, run.begin, run.end, affine);
+    meet(lanes_, run, affine);
     if (scene_.needs_coverage(instance))
       for (std::uint32_t i = run.begin; i < run.end; ++i)
         if (lanes_.new_t[i] < kNothing && !scene_.is_covered(instance, triangle, lanes_.new_u[i], lanes_.new_v[i]))
           lanes_.new_t[i] = kNothing;
-    keep_nearer(lanes_, run.begin, run.end, instance, triangle);
+    keep_nearer(lanes_, run, instance, triangle);
   }
 
-  void store(const Run& run, std::uint32_t direction, glm::vec3 along, bool trace_missed) {
+  void store_hits(const Run& run, std::uint32_t direction, glm::vec3 along, bool trace_missed) {
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       const std::uint32_t record = record_of(i, direction);
       if (lanes_.t[i] < kNothing) {
