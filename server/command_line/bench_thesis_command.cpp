@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "renderer/image_metrics/error_measures.h"
 #include "renderer/scene/builtin.h"
 #include "renderer/tracing/embree/embree_tracer.h"
 #include "server/command_line/add_option.h"
@@ -74,6 +75,27 @@ struct Bench {
     return settings;
   }
 
+  // Both at the animation's middle, with the same directions a pixel.
+  Result<double> error_of_patches(const Scene& scene, const Settings& settings) {
+    const auto picture_with = [&](int patch, int groups) -> Result<metrics::Picture> {
+      Settings other = settings;
+      other.patch = patch;
+      other.triangle_groups = groups;
+      FrameRequest request = square_frame(scene, 0.5 * animation_duration_s(scene), arguments.side_px, other);
+      request.want_linear = true;
+      const std::unique_ptr<RenderView> view = renderer.make_view();
+      Result<Frame> frame = renderer.render(scene, request, *view);
+      if (!frame) return frame.error();
+      return metrics::Picture{frame->size_px.x, frame->size_px.y, std::move(frame->linear_rgb)};
+    };
+    if (settings.patch == 1 && settings.triangle_groups == 1) return 0.0;
+    const Result<metrics::Picture> patches = picture_with(settings.patch, settings.triangle_groups);
+    if (!patches) return patches.error();
+    const Result<metrics::Picture> pixels = picture_with(1, 1);
+    if (!pixels) return pixels.error();
+    return metrics::linear_errors(*patches, *pixels).rel_mse;
+  }
+
   Status measure_row(const PrintedRow& row) {
     const Result<Scene> scene = builtin_scene(row.scene);
     if (!scene) return scene.error();
@@ -84,7 +106,10 @@ struct Bench {
                              ")";
     const Result<Measurement> measured = measure(*scene, settings, name);
     if (!measured) return measured.error();
-    found.rows.push_back({row, settings.indirect_size, measured->median, measured->frames});
+    progress.show(name + ": its error");
+    const Result<double> rel_mse = error_of_patches(*scene, settings);
+    if (!rel_mse) return rel_mse.error();
+    found.rows.push_back({row, settings.indirect_size, measured->median, measured->frames, *rel_mse});
     return Done{};
   }
 
@@ -107,6 +132,8 @@ struct Bench {
     found.threads = std::thread::hardware_concurrency();
     found.side_px = arguments.side_px;
     found.bounces = arguments.settings.bounces;
+    found.patch = arguments.settings.patch;
+    found.triangle_groups = arguments.settings.triangle_groups;
     for (const PrintedRow& row : arguments.rows)
       if (const Status status = measure_row(row); !status) return status;
     for (int divisions = 1; divisions <= kMaxTerrainDivisions; divisions *= 2) {

@@ -48,14 +48,15 @@ std::string table(const ThesisBench& bench, std::string_view name) {
     if (row.printed.table == name) rows.push_back(row);
   if (rows.empty()) return "";
   const std::vector<std::string> stages = stage_names(rows);
-  Lines lines = {
-      {"row", "samples", "indirect", "2009 fps", "fps", "ratio", "resolved M/s", "traced M/s", "frames", "frame ms"}};
+  Lines lines = {{"row", "samples", "indirect", "2009 fps", "fps", "ratio", "resolved M/s", "traced M/s", "relMSE",
+                  "frames", "frame ms"}};
   lines[0].insert(lines[0].end(), stages.begin(), stages.end());
   for (const MeasuredRow& row : rows) {
     lines.push_back({std::to_string(row.printed.number), std::to_string(row.printed.samples),
                      square(row.indirect_side_px), number(row.printed.frames_per_s, 2), figure(row.frames_per_s()),
                      number(row.ratio(), 2), figure(row.rays_resolved_per_s() / 1e6),
-                     figure(row.rays_traced_per_s() / 1e6), std::to_string(row.frames), figure(row.median.ms)});
+                     figure(row.rays_traced_per_s() / 1e6), number(row.rel_mse, 4), std::to_string(row.frames),
+                     figure(row.median.ms)});
     add_stages(lines.back(), stages, row.median);
   }
   const PrintedRow& first = rows.front().printed;
@@ -112,6 +113,7 @@ nlohmann::json row_json(const MeasuredRow& row) {
           {"ratio", row.ratio()},
           {"rays_resolved_per_s", row.rays_resolved_per_s()},
           {"rays_traced_per_s", row.rays_traced_per_s()},
+          {"rel_mse_to_patch_1", row.rel_mse},
           {"frames", row.frames},
           {"frame_ms", row.median.ms},
           {"stages", stages_json(row.median)}};
@@ -135,7 +137,9 @@ std::string aligned(const Lines& lines) {
 std::string text_report(const ThesisBench& bench) {
   std::string text = "device: " + bench.device + "\ntracer: " + bench.tracer +
                      "\nthreads: " + std::to_string(bench.threads) + "\npicture: " + square(bench.side_px) +
-                     ", bounces: " + std::to_string(bench.bounces) + "\n";
+                     ", bounces: " + std::to_string(bench.bounces) + "\npatches: " + square(bench.patch) +
+                     ", groups of triangles: " + std::to_string(bench.triangle_groups) +
+                     "; relMSE is against patches of one pixel\n";
   return text + table(bench, "6.1") + table(bench, "6.2") + summary(bench) + terrain_table(bench);
 }
 

@@ -36,7 +36,8 @@ struct MeasuredRow {
   PrintedRow printed;
   int indirect_side_px = 0;  // the printed one, scaled with the picture
   FrameCost median;
-  int frames = 0;  // that the median is over
+  int frames = 0;        // that the median is over
+  double rel_mse = 0.0;  // of a frame against the same with patches of one pixel
 
   double frames_per_s() const { return 1000.0 / median.ms; }
   /// Above 1: faster than in 2009.
@@ -65,6 +66,7 @@ struct ThesisBench {
   std::vector<MeasuredRow> rows;
   int terrain_samples = 0, terrain_indirect_side_px = 0;
   std::vector<MeasuredTerrain> terrains;  // by rising count of triangles
+  int patch = 1, triangle_groups = 1;
 };
 
 }  // namespace lightwell
