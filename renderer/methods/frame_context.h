@@ -21,7 +21,7 @@ struct FrameContext {
   const TraceScene& trace_scene;    // what the tracer was updated with
   gl::StageTimer& timer;
   const std::function<bool()>& is_unwanted;  // may be empty
-  std::uint64_t rays = 0;                    // traced in this frame, counted by the method
+  std::uint64_t rays = 0;                    // traced in this frame, without those that candidates missed
   bool abandoned = false;                    // the picture is not complete: it was wanted no more
 };
 
