@@ -110,8 +110,8 @@ TEST(BenchReport, TextHoldsRowsSummaryAndCost) {
   EXPECT_THAT(text, HasSubstr("a device"));
   EXPECT_THAT(text, HasSubstr("Table 6.1: helicopters, 1522 triangles"));
   EXPECT_EQ(text.find("Table 6.2"), std::string::npos);
-  EXPECT_TRUE(
-      std::regex_search(text, std::regex("\n *1 +32 +512x512 +11.98 +20.0 +1.67 +168 +20.0 +0.0000 +3 +50.0 +25.0 +-\n")))
+  EXPECT_TRUE(std::regex_search(
+      text, std::regex("\n *1 +32 +512x512 +11.98 +20.0 +1.67 +168 +20.0 +0.0000 +3 +50.0 +25.0 +-\n")))
       << text;
   EXPECT_THAT(text, HasSubstr("1 of 2 rows reach the printed figure; ratios from 0.70 (row 18) to 1.67 (row 1)"));
   EXPECT_TRUE(std::regex_search(text, std::regex("\n *5832 +100 +1.25 "))) << text;
