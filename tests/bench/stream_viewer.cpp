@@ -42,14 +42,19 @@ int free_port() {
   return ntohs(address.sin_port);
 }
 
-ServerProcess::ServerProcess(const std::string& program, int port) : port_(port) {
-  const std::string port_text = std::to_string(port);
+ServerProcess::ServerProcess(const std::string& program, int port, const std::vector<std::string>& options)
+    : port_(port) {
+  std::vector<std::string> words{program, "serve", "builtin:helicopters", "--port", std::to_string(port)};
+  words.insert(words.end(), options.begin(), options.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   child_ = ::fork();
   if (child_ == 0) {
     const int nowhere = ::open("/dev/null", O_WRONLY);
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);
-    ::execl(program.c_str(), program.c_str(), "serve", "builtin:helicopters", "--port", port_text.c_str(), nullptr);
+    ::execv(program.c_str(), arguments.data());
     ::_exit(127);
   }
 }

@@ -26,7 +26,8 @@ int free_port();
 /// `lightwell serve builtin:helicopters` as a child, stopped when this goes.
 class ServerProcess {
  public:
-  ServerProcess(const std::string& program, int port);
+  /// `options`: further ones of `serve`.
+  ServerProcess(const std::string& program, int port, const std::vector<std::string>& options = {});
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
