@@ -211,6 +211,7 @@ void LightTable::bind() const {
   light_texels_.bind(UNIT_LIGHT_TABLE);
   choice_texels_.bind(UNIT_LIGHT_CHOICES);
   instance_light_texels_.bind(UNIT_INSTANCE_LIGHTS);
+  lights_.bind_uniform(BINDING_EXACT_LIGHTS);
 }
 
 LightTableUniforms::LightTableUniforms(const gl::ProgramPtr& program)

@@ -1,4 +1,4 @@
-// An edge-stopping a-trous step over the indirect map (Dammertz et al. 2010), which also stops where neighbours differ by
+// An edge-stopping a-trous step over the indirect map (Dammertz et al. 2010) of nine taps, which also stops where neighbours differ by
 // more than their noise explains (Schied et al. 2017): the longer the history, the narrower.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
@@ -50,11 +50,11 @@ void main() {
   const float plane_scale = 1.0 / (kPlaneTolerance * max(distance(position_ws, camera.eye_ws.xyz), 1e-6));
   const float center_luminance = luminance(center.rgb);
   const float luminance_scale = 1.0 / (luminance_tolerance * sqrt(center.a) + 1e-6);
-  const float kernel[3] = float[](0.375, 0.25, 0.0625);  // B3 spline
+  const float kernel[2] = float[](0.5, 0.25);  // a tent: a third of the taps of the usual B3 spline
   vec3 sum = vec3(0.0);
   float variance = 0.0, weights = 0.0;
-  for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) {
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
       const ivec2 tap = texel + ivec2(x, y) * stride;
       const ivec2 inside = clamp(tap, ivec2(0), size - 1);
       const vec4 value = value_at(inside);

@@ -28,9 +28,16 @@ const int kCandidates = EXACT_LIGHTS;
 const int kCandidates = 4;
 #endif
 
+#ifdef EXACT_LIGHTS
+// The table's first records, read by constant indices: on a software device a variable one costs a load per invocation.
+layout(std140, binding = BINDING_EXACT_LIGHTS) uniform ExactLights { uvec4 exact_lights[4 * EXACT_LIGHTS]; };
+#endif
+
 TableSample candidate(int i, vec3 position_ws, uint pixel_seed) {
 #ifdef EXACT_LIGHTS
-  return sample_chosen_light(Choice(uint(i), 1.0), position_ws, vec2(0.0), 0.0);
+  const uvec4 record[4] =
+      uvec4[4](exact_lights[4 * i], exact_lights[4 * i + 1], exact_lights[4 * i + 2], exact_lights[4 * i + 3]);
+  return sample_punctual(record, 1.0, position_ws);
 #else
   const float u = sobol_1d(frame_number * uint(kCandidates) + uint(i), pixel_seed);
   TableSample light = sample_light(position_ws, true, vec2(0.0), u, 0.0);
@@ -45,7 +52,7 @@ void main() {
   const uint index = uint(pixel.y * camera.size_px.x + pixel.x);
   const GBufferPoint point = g_buffer_point(pixel);
   const uint pixel_seed = hash(uvec3(pixel, seed));
-  float u = sobol_1d(frame_number, pixel_seed ^ 0x9e3779b9u);
+  float u = unit_interval(hash(pixel_seed + frame_number * 0x9e3779b9u));
   vec3 chosen = vec3(0.0);
   float chosen_weight = 0.0, weights = 0.0;
   TableSample chosen_light = TableSample(vec3(0.0, 1.0, 0.0), 0.0, vec3(0.0), 0.0);
