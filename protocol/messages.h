@@ -105,6 +105,7 @@ struct SessionRequest {
   std::uint16_t height = 720;
   bool playing = true;
   double time_s = 0.0;
+  std::optional<double> idle_s;  // it ends after so long without viewers and requests; none: the server's own time
 
   bool operator==(const SessionRequest&) const = default;
 };
@@ -175,6 +176,7 @@ struct Session {
   double time_s = 0.0;
   std::uint64_t revision = 0;
   std::uint32_t viewers = 0;
+  double idle_s = 0.0;  // as in the request
 
   bool operator==(const Session&) const = default;
 };

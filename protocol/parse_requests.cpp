@@ -30,6 +30,7 @@ void read_session_request(const Value& value, SessionRequest& out) {
   object.with_default("height", out.height, read_pixels);
   object.with_default("playing", out.playing, read_boolean);
   object.with_default("time_s", out.time_s, read_time);
+  object.optional("idle_s", out.idle_s, read_time);
   object.finish();
 }
 

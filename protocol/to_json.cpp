@@ -243,7 +243,8 @@ Json to_json(const Session& session) {
           {"playing", session.playing},
           {"time_s", number(session.time_s)},
           {"revision", session.revision},
-          {"viewers", session.viewers}};
+          {"viewers", session.viewers},
+          {"idle_s", number(session.idle_s)}};
 }
 
 Json to_json(const RenderRequest& request) {
@@ -259,10 +260,12 @@ Json to_json(const RenderRequest& request) {
 }
 
 Json to_json(const SessionRequest& request) {
-  return {
+  Json object{
       {"scene", request.scene},          {"camera", to_json(request.camera)}, {"settings", to_json(request.settings)},
       {"width", request.width},          {"height", request.height},          {"playing", request.playing},
       {"time_s", number(request.time_s)}};
+  give(object, "idle_s", request.idle_s, number);
+  return object;
 }
 
 Json to_json(const SessionPatch& patch) {

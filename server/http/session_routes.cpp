@@ -14,12 +14,24 @@ Response no_such_session() {
   return http::problem_response(protocol::make_problem(404, "there is no such session, or it has ended"));
 }
 
+/// How long the session may stand idle: as asked for, if that is within what the server gives.
+protocol::Decoded<double> idle_time(const protocol::SessionRequest& request, const ServeLimits& limits) {
+  constexpr double kLeast = 1.0;  // how often anyone looks
+  if (!request.idle_s) return limits.session_idle_s;
+  if (*request.idle_s >= kLeast && *request.idle_s <= limits.session_idle_s) return *request.idle_s;
+  const auto most = std::llround(limits.session_idle_s);
+  return protocol::make_problem(422, "a session may stand idle for 1 to " + std::to_string(most) + " seconds",
+                                "/idle_s");
+}
+
 Response create_session(const Services& services, std::string_view body) {
   const auto request = protocol::parse_session_request(body);
   if (!request) return http::problem_response(request.problem());
+  const auto idle_s = idle_time(*request, services.options.limits);
+  if (!idle_s) return http::problem_response(idle_s.problem());
   auto state = make_session_state(*request, services.surroundings.rules, std::chrono::steady_clock::now());
   if (!state) return http::problem_response(state.problem());
-  const auto session = services.sessions.add(std::move(state).value(), services.surroundings);
+  const auto session = services.sessions.add(std::move(state).value(), services.surroundings, *idle_s);
   if (!session) return http::problem_response(session.problem());
   DirectorOptions options;
   options.quality = services.options.quality;

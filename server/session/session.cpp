@@ -10,9 +10,10 @@ using protocol::make_problem;
 using protocol::Problem;
 using std::chrono::steady_clock;
 
-Session::Session(std::string id, SessionState state, const SessionSurroundings& surroundings)
+Session::Session(std::string id, SessionState state, const SessionSurroundings& surroundings, double idle_s)
     : id_(std::move(id)),
       surroundings_(surroundings),
+      idle_s_(idle_s),
       state_(std::make_shared<const SessionState>(std::move(state))),
       touched_(steady_clock::now()) {}
 
@@ -29,6 +30,7 @@ protocol::Session Session::describe() const {
   session.time_s = state->clock.time_s(steady_clock::now());
   session.revision = state->revision;
   session.viewers = static_cast<std::uint32_t>(audience_.size());
+  session.idle_s = idle_s_;
   return session;
 }
 

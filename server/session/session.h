@@ -25,7 +25,8 @@ struct SessionSurroundings {
 /// Thread-safe. Readers get a state that never changes; writers make the next one, one at a time.
 class Session : public ViewerHost, public DirectedSession, public std::enable_shared_from_this<Session> {
  public:
-  Session(std::string id, SessionState state, const SessionSurroundings& surroundings);
+  /// `idle_s`: it ends after so long without viewers and requests.
+  Session(std::string id, SessionState state, const SessionSurroundings& surroundings, double idle_s);
 
   const std::string& id() const { return id_; }
   std::size_t viewers() const { return audience_.size(); }
@@ -47,6 +48,7 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   void touch();
   /// Since when nobody watched or asked; never while someone watches.
   SteadyTime idle_since() const;
+  double idle_s() const { return idle_s_; }
 
   // ViewerHost
   protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) override;
@@ -74,6 +76,7 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
 
   const std::string id_;
   const SessionSurroundings& surroundings_;
+  const double idle_s_;
   Audience audience_;
   std::atomic<bool> ended_ = false;
 

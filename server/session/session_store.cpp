@@ -6,8 +6,8 @@
 namespace lightwell {
 
 protocol::Decoded<std::shared_ptr<Session>> SessionStore::add(SessionState state,
-                                                              const SessionSurroundings& surroundings) {
-  auto session = std::make_shared<Session>(random_id(), std::move(state), surroundings);
+                                                              const SessionSurroundings& surroundings, double idle_s) {
+  auto session = std::make_shared<Session>(random_id(), std::move(state), surroundings, idle_s);
   std::lock_guard lock(mutex_);
   if (sessions_.size() >= static_cast<std::size_t>(limits_.max_sessions))
     return protocol::make_problem(
@@ -40,13 +40,12 @@ bool SessionStore::end(const std::string& id) {
 }
 
 void SessionStore::keep_house(SteadyTime now) {
-  const auto patience = std::chrono::duration<double>(limits_.session_idle_s);
   std::vector<std::shared_ptr<Session>> idle, alive;
   {
     std::lock_guard lock(mutex_);
     for (auto it = sessions_.begin(); it != sessions_.end();) {
       const SteadyTime since = it->second->idle_since();
-      const bool is_idle = since < now && now - since > patience;
+      const bool is_idle = since < now && now - since > std::chrono::duration<double>(it->second->idle_s());
       (is_idle ? idle : alive).push_back(it->second);
       it = is_idle ? sessions_.erase(it) : std::next(it);
     }

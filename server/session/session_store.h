@@ -16,7 +16,8 @@ class SessionStore {
   explicit SessionStore(const ServeLimits& limits) : limits_(limits) {}
 
   /// Problem: 503 if there are as many as may be.
-  protocol::Decoded<std::shared_ptr<Session>> add(SessionState state, const SessionSurroundings& surroundings);
+  protocol::Decoded<std::shared_ptr<Session>> add(SessionState state, const SessionSurroundings& surroundings,
+                                                  double idle_s);
   /// Null if there is none; otherwise it counts as asked for.
   std::shared_ptr<Session> find(const std::string& id);
   /// False if there is none.

@@ -104,6 +104,7 @@ void ask_what_means_nothing(Answers& answers) {
   answers["too_many"] = asked.ask("PUT", "/v1/scenes/d", triangle_glb(), kGlb);
   asked.studio->throwing = true;
   answers["internal"] = asked.render(json::object());
+  answers["idle"] = asked.ask("POST", "/v1/sessions", R"({"scene":"cornell","width":8,"height":8,"idle_s":86400})");
   answers["upgrade"] = asked.ask("GET", "/v1/sessions/" + asked.session() + "/stream");
 }
 

@@ -62,6 +62,13 @@ TEST_F(SessionLifeTest, DrainTellsViewersToReconnectAndEndsRequestsInFlight) {
   drainer.join();
 }
 
+TEST_F(SessionLifeTest, ASessionMayAskToEndSooner) {
+  const std::string brief = make_session({{"idle_s", 1}}), usual = make_session();
+  EXPECT_TRUE(comes_true([this] { return metric("lightwell_sessions") == 1; }));
+  EXPECT_EQ(ask("GET", "/v1/sessions/" + brief).status, 404);
+  EXPECT_EQ(json::parse(ask("GET", "/v1/sessions/" + usual).body)["idle_s"], 600);
+}
+
 ServeOptions soon_forgotten() {
   ServeOptions options = test_options();
   options.limits.session_idle_s = 0.5;

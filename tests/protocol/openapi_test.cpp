@@ -145,7 +145,9 @@ TEST(OpenApi, ListsEveryMemberOfWhatIsWritten) {
   patch.scene = "a";
   patch.width = patch.height = 1;
   EXPECT_EQ(names_of(schema("SessionPatch")["properties"]), names_of(to_json(patch)));
-  EXPECT_EQ(names_of(schema("SessionRequest")["properties"]), names_of(to_json(SessionRequest{})));
+  SessionRequest session;
+  session.idle_s = 1.0;  // the server's own time is not written
+  EXPECT_EQ(names_of(schema("SessionRequest")["properties"]), names_of(to_json(session)));
   EXPECT_EQ(names_of(schema("RenderRequest")["properties"]), names_of(to_json(RenderRequest{})));
   EXPECT_EQ(names_of(schema("Session")["properties"]), names_of(to_json(Session{})));
   EXPECT_EQ(names_of(schema("SequenceRequest")["properties"]), names_of(to_json(SequenceRequest{})));
