@@ -123,6 +123,10 @@ void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multipl
   if (points) light_defines_.emplace_back("POINT_LIGHTS 1");
   brdf_defines_ = lobe_defines_;
   if (multiple_scattering) brdf_defines_.emplace_back("MULTISCATTER 1");
+  is_lambert_ = !has_lobes_ && std::all_of(pose.instances.begin(), pose.instances.end(), [&](const Instance& instance) {
+    return instance.material >= 0 &&
+           lightwell::is_lambert(scene.materials[static_cast<std::size_t>(instance.material)]);
+  });
   environment_defines_.clear();
   if (scene.environment.image) environment_defines_.emplace_back("HAS_ENVIRONMENT_IMAGE 1");
 }

@@ -66,6 +66,8 @@ class DeviceScene {
   const gl::Defines& brdf_defines() const { return brdf_defines_; }
   const gl::Defines& lobe_defines() const { return lobe_defines_; }  // HAS_LOBES alone
   bool has_lobes() const { return has_lobes_; }
+  /// No instance has a specular lobe or one of an extension: a path tracer's shaders may leave them out (LAMBERT_ONLY).
+  bool is_lambert() const { return is_lambert_; }
   const gl::Defines& environment_defines() const { return environment_defines_; }
   /// Alpha masks or blends.
   bool has_coverage() const { return has_coverage_; }
@@ -101,7 +103,7 @@ class DeviceScene {
   gl::BufferTexture vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
   GLuint vertex_array_ = 0;
   Draws draws_[3];
-  bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false;
+  bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false, is_lambert_ = false;
   gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_;
   std::uint64_t triangles_ = 0;
 };

@@ -125,6 +125,10 @@ DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t f
   return packed;
 }
 
+bool is_lambert(const Material& material) {
+  return material.metallic_factor == 0.0f && material.specular_factor == 0.0f;
+}
+
 bool has_lobes(const Material& material) {
   return material.clearcoat_factor > 0.0f || material.sheen_color_factor != glm::vec3(0.0f) ||
          material.transmission_factor > 0.0f || material.specular_color_factor != glm::vec3(1.0f) ||

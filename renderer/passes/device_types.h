@@ -93,6 +93,9 @@ DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t f
                              std::uint32_t first_triangle, std::uint32_t material);
 /// True if a material needs more than the plain BRDF.
 bool has_lobes(const Material& material);
+
+/// Whether its light is all reflected by the diffuse base: no metal, and nothing at the interface.
+bool is_lambert(const Material& material);
 DeviceMaterial pack_material(const Material& material, const SceneTextures& textures);
 
 }  // namespace lightwell

@@ -148,6 +148,7 @@ void PathTracerPass::resize(glm::ivec2 size_px) {
 PathTracerPass::VertexVariant& PathTracerPass::variant_for(const DeviceScene& scene, const LightTable& lights) {
   gl::Defines defines =
       gl::joined(gl::joined(scene.texture_defines(), scene.brdf_defines()), scene.environment_defines());
+  if (scene.is_lambert()) defines.emplace_back("LAMBERT_ONLY 1");
   if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
   if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
   if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");

@@ -4,6 +4,7 @@
 // Needs shaders/sampling.glsl and shaders/packing.glsl, and passes/bindings.glsl for the variants:
 // MULTISCATTER: light that bounces between microfacets is not lost (Kulla and Conty 2017), and the diffuse base gets all
 //   that the interface leaves over (Kelemen and Szirmay-Kalos 2001); needs the table of passes/brdf_table.comp.
+// LAMBERT_ONLY: for scenes whose materials are all without a specular lobe, in the frame of the normal.
 // HAS_LOBES: the lobes of glTF's extensions, see shaders/brdf_lobes.glsl.
 #include "shaders/microfacet.glsl"
 
@@ -150,6 +151,10 @@ vec3 brdf_times_cosine(Brdf brdf, vec3 normal, vec3 out_direction, vec3 in_direc
 
 // The same for directions in the frame of the normal (+Z).
 vec3 brdf_times_cosine(Brdf brdf, vec3 out_direction, vec3 in_direction) {
+#ifdef LAMBERT_ONLY
+  const bool above = out_direction.z > 0.0 && in_direction.z > 0.0;
+  return above ? brdf.diffuse_albedo * (in_direction.z * (1.0 / kPi)) : vec3(0.0);
+#endif
   const vec3 half_vector = normalize(out_direction + in_direction);
   return base_times_cosine(brdf, out_direction.z, in_direction.z, dot(out_direction, half_vector),
                            ggx_distribution(half_vector, brdf.alpha));
@@ -171,6 +176,9 @@ float specular_probability(Brdf brdf, float cos_out) {
 // Density over solid angle with which sample_brdf gives `in_direction`; directions in the frame of the normal.
 float brdf_pdf(Brdf brdf, vec3 out_direction, vec3 in_direction) {
   if (out_direction.z <= 0.0 || in_direction.z <= 0.0) return 0.0;
+#ifdef LAMBERT_ONLY
+  return in_direction.z * (1.0 / kPi);
+#endif
   const float share = specular_probability(brdf, out_direction.z);
   const vec3 half_vector = normalize(out_direction + in_direction);
   return (1.0 - share) * in_direction.z * (1.0 / kPi) +
@@ -179,6 +187,9 @@ float brdf_pdf(Brdf brdf, vec3 out_direction, vec3 in_direction) {
 
 // An importance-sampled direction; `u` chooses within a lobe, `u_lobe` the lobe. May point below the surface (pdf 0).
 vec3 sample_brdf(Brdf brdf, vec3 out_direction, vec2 u, float u_lobe) {
+#ifdef LAMBERT_ONLY
+  return cosine_hemisphere(u);
+#endif
   const bool specular = u_lobe < specular_probability(brdf, out_direction.z);
   const vec3 visible_normal = sample_visible_normal(out_direction, brdf.alpha, u);
   const vec3 reflected = reflect(-out_direction, visible_normal);

@@ -17,6 +17,13 @@ import subprocess
 import tempfile
 import time
 
+# What nothing here can be quicker than: each segment is traced, and so is a shadow ray from its surface, at the rate of
+# rays/s of the Embree tracer on four free cores of the software device (tests/bench/results); and each moves these bytes
+# between shaders, tracer and memory (ray, hit, state and pixel, shadow ray, pending light, radiance).
+RAYS_PER_S = 20e6
+BYTES_PER_SEGMENT = 32 * 4 + 20 * 2 + 20 * 2 + 16 * 2 + 32
+BYTES_PER_S = 10e9
+
 AIMS = {"box": (0.017, 1.9), "ceiling": (0.0086, 2.0), "gold": (0.047, 2.4)}
 
 
@@ -144,16 +151,18 @@ def measure(arguments, name, folder):
         render(arguments.program, scene, truth, arguments.truth_spp, seed=1 << 30)
     aim, aim_s = AIMS[name]
     print(f"{name}: {triangles} triangles; the aim is relMSE {aim} in less than {aim_s} s")
-    print("   spp   relMSE  seconds  median   paths/s  segments/s  tracer  shading")
+    print("   spp   relMSE  seconds  median   start   paths/s  segments/s  tracer  shading    floor: rays   bytes")
     for spp in arguments.spp:
         runs = [render(arguments.program, scene, picture, spp) for _ in range(arguments.runs)]
         error = rel_mse(arguments.program, picture, truth)
         seconds = sorted(run[0] for run in runs)
         best = min((run[1]["pictures"][0] for run in runs), key=lambda made: made["total_ms"])
         rate = 1e3 / best["total_ms"]
-        print(f"{spp:6d} {error:8.5f} {seconds[0]:8.2f} {statistics.median(seconds):7.2f}"
+        start = min(run[0] - run[1]["pictures"][0]["total_ms"] / 1e3 for run in runs)
+        print(f"{spp:6d} {error:8.5f} {seconds[0]:8.2f} {statistics.median(seconds):7.2f} {start:7.2f}"
               f" {256 * 256 * spp * rate / 1e6:7.2f} M {best['rays'] * rate / 1e6:9.2f} M"
-              f" {100 * share(best, {'trace', 'shadows'}):6.0f}% {100 * share(best, {'surfaces', 'pack'}):7.0f}%",
+              f" {100 * share(best, {'trace', 'shadows'}):6.0f}% {100 * share(best, {'surfaces', 'pack'}):7.0f}%"
+              f" {2 * best['rays'] / RAYS_PER_S:12.2f} s {best['rays'] * BYTES_PER_SEGMENT / BYTES_PER_S:5.2f} s",
               flush=True)
 
 

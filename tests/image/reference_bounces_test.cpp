@@ -79,6 +79,21 @@ TEST(ReferenceStrategies, EachAloneHasTheSameMean) {
   EXPECT_LT(both.standard_error, 1.5 * std::min(lights.standard_error, rays.standard_error));
 }
 
+// Scenes without a specular lobe have shaders of their own; a mirror that nobody sees makes the scene one with lobes.
+TEST(ReferenceBounces, LambertScenesLookLikeThoseWithLobes) {
+  const auto mean = [](bool with_a_mirror) {
+    SceneMaker maker;
+    maker.room({-1, -1, -1}, {1, 1, 1}, maker.material(lambert(glm::vec3(0.6f))));
+    maker.quad({-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f},
+               maker.material(lambert(glm::vec3(0.0f), glm::vec3(6.0f))));
+    if (with_a_mirror) maker.quad({9, 9, 9}, {1, 0, 0}, {0, 1, 0}, maker.material(Material{}));
+    return estimate_mean(maker.take(), look_at({0, 0, 0.9f}, {0, 0, -1}, 1.2f), reference_settings(4));
+  };
+  const Estimate without = mean(false), with = mean(true);
+  EXPECT_NEAR(without.mean, with.mean, 1e-4 * with.mean);  // the same samples
+  EXPECT_LT(without.standard_error, 0.01 * with.mean);
+}
+
 TEST(ReferenceStrategies, EachAloneSeesTheSameReflectance) {
   for (const float metallic : {0.0f, 1.0f})
     for (const float roughness : {0.3f, 0.7f}) {
