@@ -150,6 +150,37 @@ TEST(ReferenceAreaLights, ARectangleLightHasThePolygonsIrradiance) {
   }
 }
 
+// Shadow rays end at glass; the paths that go on through it find the lamp behind it, so that no light of it is lost.
+TEST(ReferenceAreaLights, ALampShinesThroughGlass) {
+  Material glass;
+  glass.metallic_factor = 0.0f;
+  glass.roughness_factor = 0.0f;
+  glass.transmission_factor = 1.0f;
+  const auto light_on_the_floor = [&](bool pane, bool volume, LightStrategy strategy) {
+    SceneMaker maker;
+    maker.quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, maker.material(lambert(glm::vec3(0.5f))));
+    maker.quad({-0.25f, 1, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f},
+               maker.material(lambert(glm::vec3(0.0f), glm::vec3(8.0f))));
+    glass.thickness_factor = volume ? 1.0f : 0.0f;
+    const int material = maker.material(glass);
+    if (pane) maker.quad({-2, 0.5f, -2}, {4, 0, 0}, {0, 0, 4}, material);     // faces down
+    if (volume) maker.quad({-2, 0.51f, 2}, {4, 0, 0}, {0, 0, -4}, material);  // its upper side
+    Settings settings = reference_settings(8);
+    settings.light_strategy = strategy;
+    return estimate_mean(maker.take(), look_at({0, 0.4f, 0.3f}, {0, 0, 0}, 0.002f), settings, {32, 32}, 16);
+  };
+  const double free = light_on_the_floor(false, false, LightStrategy::kBoth).mean;
+  const double reflected = 0.04;
+  for (const LightStrategy strategy : {LightStrategy::kBoth, LightStrategy::kRays}) {
+    // Near normal incidence; what the floor sends up comes back by the pane's reflection, less than a thousandth.
+    expect_within(light_on_the_floor(true, false, strategy), (1.0 - reflected) * free, 0.005, 0.02);
+    // The slab brings the lamp nearer by its thickness times 1 - 1 / ior.
+    const double nearer = 0.01 * (1.0 - 1.0 / 1.5);
+    expect_within(light_on_the_floor(true, true, strategy),
+                  (1.0 - reflected) / (1.0 + reflected) * free * std::pow(1.0 - nearer, -2.0), 0.008, 0.02);
+  }
+}
+
 TEST(ReferenceAreaLights, LightsOfNoSizeOrPowerLightNothing) {
   SceneMaker maker;
   maker.quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, maker.material(lambert(glm::vec3(0.5f))));
