@@ -103,8 +103,9 @@ glm::vec2 pixel_jitter(std::uint32_t frame_number) {
 
 std::unique_ptr<Tracer> make_tracer(const RendererOptions& options, bool software) {
   const bool native = options.tracer.empty() ? software && options.make_native_tracer : options.tracer == "embree";
+  if (options.tracer == "brute-force") return make_brute_force_tracer();
   if (!options.tracer.empty() && options.tracer != "embree" && options.tracer != "compute")
-    throw std::runtime_error("--tracer takes embree or compute, not \"" + options.tracer + "\"");
+    throw std::runtime_error("--tracer takes embree, compute or brute-force, not \"" + options.tracer + "\"");
   if (native && !options.make_native_tracer) throw std::runtime_error("this build has no Embree tracer");
   return native ? options.make_native_tracer() : make_compute_tracer();
 }

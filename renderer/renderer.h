@@ -142,7 +142,7 @@ class RenderView {
 
 struct RendererOptions {
   gl::DeviceChoice device;
-  std::string tracer;  // "" (compute on a GPU, else the native one if given), "embree" or "compute"
+  std::string tracer;  // "" (compute on a GPU, else the native one if given), "embree", "compute" or "brute-force"
   /// Makes the native tracer; the core does not link it. Empty: there is none.
   std::function<std::unique_ptr<Tracer>()> make_native_tracer;
   /// Compiles the methods' shaders at the start, so that no frame waits for them; else each when it is first used.

@@ -24,12 +24,8 @@ const uint kNoPatch = 0xffffffffu;
 // Keeps the candidate if the ray meets it nearer than `hit`.
 void try_candidate(Ray ray, uint instance, uint triangle, inout Hit hit) {
   const uvec2 where = instances[instance];
-  const vec4 x = uintBitsToFloat(group_words[4u * where.x]), y = uintBitsToFloat(group_words[4u * where.x + 1u]);
-  const vec4 z = uintBitsToFloat(group_words[4u * where.x + 2u]);
-  const uvec4 group = group_words[4u * where.x + 3u];
-  const vec4 origin = vec4(ray.origin_ws, 1.0), direction = vec4(ray.direction_ws, 0.0);
-  const LocalRay local = local_ray(vec3(dot(x, origin), dot(y, origin), dot(z, origin)),
-                                   vec3(dot(x, direction), dot(y, direction), dot(z, direction)));
+  uvec4 group;
+  const LocalRay local = enter_group(ray, where.x, group);
   test_leaf(local, places[where.y + triangle], 1u, group, ray.t_min, hit);
 }
 

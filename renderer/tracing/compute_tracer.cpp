@@ -1,4 +1,4 @@
-// The tracer that never leaves the device: trace.comp over hierarchies built on the CPU.
+// The tracers that never leave the device: trace.comp over hierarchies built on the CPU, or over all triangles.
 #include <optional>
 
 #include "renderer/check.h"
@@ -26,12 +26,14 @@ void finish_writing() {
 // One build of trace.comp.
 class TraceProgram {
  public:
-  TraceProgram(gl::ShaderLibrary& shaders, bool any_hit, bool coverage)
+  TraceProgram(gl::ShaderLibrary& shaders, bool any_hit, bool coverage, bool brute_force)
       : program_(shaders.compute("tracing/trace.comp",
-                                 {any_hit ? "ANY_HIT 1" : "ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0"})),
+                                 {any_hit ? "ANY_HIT 1" : "ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0",
+                                  brute_force ? "BRUTE_FORCE 1" : "BRUTE_FORCE 0"})),
         lists_hits_(program_, "lists_hits"),
         ray_count_(program_, "ray_count"),
-        top_root_(program_, "top_root") {}
+        top_root_(program_, "top_root"),
+        scene_groups_(program_, "scene_groups") {}
 
   void run(const gl::Buffer& rays, std::uint32_t count, const gl::Buffer& results, const DeviceHierarchies& hierarchies,
            HitList* list = nullptr) const {
@@ -42,6 +44,7 @@ class TraceProgram {
     results.bind_storage(TRACE_BINDING_RESULTS);
     ray_count_ = count;
     top_root_ = hierarchies.top_root();
+    scene_groups_ = hierarchies.group_count();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program_->dispatch(count, TRACE_GROUP_SIZE);
     finish_writing();
@@ -50,19 +53,21 @@ class TraceProgram {
  private:
   gl::ProgramPtr program_;
   gl::Uniform<int> lists_hits_;
-  gl::Uniform<std::uint32_t> ray_count_, top_root_;
+  gl::Uniform<std::uint32_t> ray_count_, top_root_, scene_groups_;
 };
 
 // One build of candidates.comp.
 class CandidateProgram {
  public:
-  CandidateProgram(gl::ShaderLibrary& shaders, bool coverage)
-      : program_(shaders.compute("tracing/candidates.comp", {"ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0"})),
+  CandidateProgram(gl::ShaderLibrary& shaders, bool coverage, bool brute_force)
+      : program_(shaders.compute("tracing/candidates.comp", {"ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0",
+                                                             brute_force ? "BRUTE_FORCE 1" : "BRUTE_FORCE 0"})),
         pixel_count_(program_, "pixel_count"),
         patch_count_(program_, "patch_count"),
         direction_count_(program_, "direction_count"),
         group_count_(program_, "group_count"),
         top_root_(program_, "top_root"),
+        scene_groups_(program_, "scene_groups"),
         trace_missed_(program_, "trace_missed") {}
 
   void run(const CandidateTest& test, const gl::Buffer& hits, const DeviceHierarchies& hierarchies,
@@ -79,6 +84,7 @@ class CandidateProgram {
     direction_count_ = test.direction_count;
     group_count_ = test.group_count;
     top_root_ = hierarchies.top_root();
+    scene_groups_ = hierarchies.group_count();
     trace_missed_ = test.trace_missed ? 1 : 0;
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program_->dispatch(test.pixel_count * test.direction_count, TRACE_GROUP_SIZE);
@@ -87,13 +93,15 @@ class CandidateProgram {
 
  private:
   gl::ProgramPtr program_;
-  gl::Uniform<std::uint32_t> pixel_count_, patch_count_, direction_count_, group_count_, top_root_;
+  gl::Uniform<std::uint32_t> pixel_count_, patch_count_, direction_count_, group_count_, top_root_, scene_groups_;
   gl::Uniform<int> trace_missed_;
 };
 
 class ComputeTracer final : public Tracer {
  public:
-  std::string_view name() const override { return "compute"; }
+  explicit ComputeTracer(bool brute_force) : brute_force_(brute_force) {}
+
+  std::string_view name() const override { return brute_force_ ? "brute-force" : "compute"; }
 
   void update(const TraceScene& scene) override { hierarchies_.update(scene); }
 
@@ -112,16 +120,18 @@ class ComputeTracer final : public Tracer {
   void test_candidates(const CandidateTest& test, gl::Buffer& hits, HitList& list) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{test.pixel_count} * test.direction_count * sizeof(Hit), <=, hits.size_bytes());
     std::optional<CandidateProgram>& program = hierarchies_.needs_coverage() ? covered_candidates_ : candidates_;
-    if (!program) program.emplace(shaders_, hierarchies_.needs_coverage());
+    if (!program) program.emplace(shaders_, hierarchies_.needs_coverage(), brute_force_);
     program->run(test, hits, hierarchies_, list);
   }
 
   std::uint64_t memory_bytes() const override { return hierarchies_.memory_bytes(); }
 
  private:
+  bool brute_force_;
   gl::ShaderLibrary shaders_;
-  TraceProgram closest_hit_{shaders_, false, false}, covered_closest_hit_{shaders_, false, true};
-  TraceProgram any_hit_{shaders_, true, false}, covered_any_hit_{shaders_, true, true};
+  TraceProgram closest_hit_{shaders_, false, false, brute_force_};
+  TraceProgram covered_closest_hit_{shaders_, false, true, brute_force_};
+  TraceProgram any_hit_{shaders_, true, false, brute_force_}, covered_any_hit_{shaders_, true, true, brute_force_};
   std::optional<CandidateProgram> candidates_, covered_candidates_;  // made when patches are first used
   DeviceHierarchies hierarchies_;
 };
@@ -129,7 +139,11 @@ class ComputeTracer final : public Tracer {
 }  // namespace
 
 std::unique_ptr<Tracer> make_compute_tracer() {
-  return std::make_unique<ComputeTracer>();
+  return std::make_unique<ComputeTracer>(false);
+}
+
+std::unique_ptr<Tracer> make_brute_force_tracer() {
+  return std::make_unique<ComputeTracer>(true);
 }
 
 }  // namespace lightwell

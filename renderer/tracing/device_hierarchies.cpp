@@ -211,6 +211,7 @@ void DeviceHierarchies::build_top_level(const std::vector<GeometryGroup>& groups
                                         const std::vector<const BottomLevel*>& levels, std::size_t instance_count) {
   if (groups.empty()) {
     top_root_ = kNothing;
+    groups_.clear();
     return;
   }
   std::vector<Box> boxes;
@@ -237,7 +238,8 @@ void DeviceHierarchies::build_top_level(const std::vector<GeometryGroup>& groups
     records.push_back({{rows[0], rows[1], rows[2]},
                        levels[item]->root,
                        groups[item].first_instance,
-                       groups[item].key.filtered ? 1u : 0u});
+                       levels[item]->triangles.count() | (groups[item].key.filtered ? DeviceGroup::kNeedsCoverage : 0u),
+                       levels[item]->triangles.first()});
   }
   upload_if_changed(group_buffer_, groups_, std::move(records));
   upload_if_changed(instance_buffer_, instances_, find_instances(groups, levels, top.items, instance_count));

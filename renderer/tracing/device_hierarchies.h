@@ -21,8 +21,9 @@ struct DeviceGroup {
   glm::vec4 object_from_world[3];  // rows
   std::uint32_t root;              // BvhChild in the node buffer
   std::uint32_t first_instance;
-  std::uint32_t needs_coverage;
-  std::uint32_t padding = 0;
+  std::uint32_t triangles;  // their count, and kNeedsCoverage
+  std::uint32_t first_triangle;
+  static constexpr std::uint32_t kNeedsCoverage = 1u << 31;
 };
 static_assert(sizeof(DeviceGroup) == 64);
 
@@ -57,6 +58,9 @@ class DeviceHierarchies {
   /// A BvhChild, or kNothing if there is no triangle.
   std::uint32_t top_root() const { return top_root_; }
   static constexpr std::uint32_t kNothing = 0xffffffffu;
+
+  /// In the group buffer.
+  std::uint32_t group_count() const { return static_cast<std::uint32_t>(groups_.size()); }
 
   bool needs_coverage() const { return needs_coverage_; }
   std::uint64_t memory_bytes() const;

@@ -96,7 +96,7 @@ class Tracer {
  public:
   virtual ~Tracer() = default;
 
-  /// "embree" or "compute".
+  /// "embree", "compute" or "brute-force".
   virtual std::string_view name() const = 0;
 
   /// Takes the instances of this frame: hierarchies of new geometry are built and kept, deformed geometry is refitted
@@ -122,5 +122,9 @@ class Tracer {
 
 /// The tracer that never leaves the device.
 std::unique_ptr<Tracer> make_compute_tracer();
+
+/// The same without a hierarchy: every ray tries every triangle, as in the thesis' own implementation. What it costs is
+/// linear in both.
+std::unique_ptr<Tracer> make_brute_force_tracer();
 
 }  // namespace lightwell

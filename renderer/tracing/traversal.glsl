@@ -1,6 +1,6 @@
 // Follows rays through the two levels of hierarchies: the top one over groups of instances, and each group's own.
 // Needs ray, and the defines: ANY_HIT 1 for visibility, 0 for nearest hits. COVERAGE 1 if some instance needs a coverage
-// test.
+// test. BRUTE_FORCE 1 to try every triangle with every ray instead, whatever the hierarchies say.
 #include "tracing/bindings.glsl"
 #include "tracing/triangle.glsl"
 #if COVERAGE
@@ -10,6 +10,8 @@
 layout(std430, binding = TRACE_BINDING_NODES) readonly buffer Nodes { uvec4 node_words[]; };              // BvhNode
 layout(std430, binding = TRACE_BINDING_TRIANGLES) readonly buffer Triangles { uvec4 triangle_words[]; };  // DeviceTriangle
 layout(std430, binding = TRACE_BINDING_GROUPS) readonly buffer Groups { uvec4 group_words[]; };           // DeviceGroup
+
+const uint kNeedsCoverage = 0x80000000u;  // DeviceGroup: beside the count of its triangles
 
 uniform uint top_root;  // a BvhChild, or kDone if there is nothing to hit
 
@@ -55,7 +57,7 @@ void test_leaf(LocalRay ray, uint first, uint count, uvec4 group, float t_min, i
       continue;
     const uint instance = group.y + b.w;
 #if COVERAGE
-    if (group.z != 0u && !is_covered(instance, a.w, uv)) continue;
+    if ((group.z & kNeedsCoverage) != 0u && !is_covered(instance, a.w, uv)) continue;
 #endif
     hit = Hit(t, instance, a.w, uv.x, uv.y);
 #if ANY_HIT
@@ -64,6 +66,33 @@ void test_leaf(LocalRay ray, uint first, uint count, uvec4 group, float t_min, i
   }
 }
 
+// The ray in the space of a group, which is read as well. The direction keeps its length there, so distances agree.
+LocalRay enter_group(Ray ray, uint index, out uvec4 group) {
+  const vec4 x = uintBitsToFloat(group_words[4u * index]), y = uintBitsToFloat(group_words[4u * index + 1u]);
+  const vec4 z = uintBitsToFloat(group_words[4u * index + 2u]);
+  group = group_words[4u * index + 3u];
+  const vec4 origin = vec4(ray.origin_ws, 1.0), direction = vec4(ray.direction_ws, 0.0);
+  return local_ray(vec3(dot(x, origin), dot(y, origin), dot(z, origin)),
+                   vec3(dot(x, direction), dot(y, direction), dot(z, direction)));
+}
+
+#if BRUTE_FORCE
+uniform uint scene_groups;  // of instances
+
+// The nearest hit, or any hit if ANY_HIT; hit.t is t_max as it was if there is none.
+Hit trace(Ray ray) {
+  Hit hit = Hit(ray.t_max, 0u, 0u, 0.0, 0.0);
+  for (uint i = 0u; i < scene_groups; ++i) {
+    uvec4 group;
+    const LocalRay local = enter_group(ray, i, group);
+    test_leaf(local, group.w, group.z & ~kNeedsCoverage, group, ray.t_min, hit);
+#if ANY_HIT
+    if (hit.t < ray.t_max) break;
+#endif
+  }
+  return hit;
+}
+#else
 // The nearest hit, or any hit if ANY_HIT; hit.t is t_max as it was if there is none.
 Hit trace(Ray ray) {
   Hit hit = Hit(ray.t_max, 0u, 0u, 0.0, 0.0);
@@ -99,13 +128,7 @@ Hit trace(Ray ray) {
     }
     const uint first = child & kFirstMask;
     if (group.x == kDone) {
-      // A leaf of the top level is one group. The direction keeps its length in the group's space, so distances agree.
-      const vec4 x = uintBitsToFloat(group_words[4u * first]), y = uintBitsToFloat(group_words[4u * first + 1u]);
-      const vec4 z = uintBitsToFloat(group_words[4u * first + 2u]);
-      group = group_words[4u * first + 3u];
-      const vec4 origin = vec4(ray.origin_ws, 1.0), direction = vec4(ray.direction_ws, 0.0);
-      local = local_ray(vec3(dot(x, origin), dot(y, origin), dot(z, origin)),
-                        vec3(dot(x, direction), dot(y, direction), dot(z, direction)));
+      local = enter_group(ray, first, group);  // a leaf of the top level is one group
       stack[size++] = kLeaveGroup;
       child = group.x;
       continue;
@@ -119,3 +142,4 @@ Hit trace(Ray ray) {
   }
   return hit;
 }
+#endif

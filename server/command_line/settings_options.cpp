@@ -51,8 +51,8 @@ Result<std::optional<float>> parse_exposure(const std::string& text) {
 }
 
 Result<std::string> parse_tracer(const std::string& text) {
-  if (text == "embree" || text == "compute") return text;
-  return invalid_input("", "expected embree or compute, not \"" + text + "\"");
+  if (text == "embree" || text == "compute" || text == "brute-force") return text;
+  return invalid_input("", "expected embree, compute or brute-force, not \"" + text + "\"");
 }
 
 void add_transport_options(CLI::App& app, Settings& settings) {
@@ -132,8 +132,8 @@ void add_device_options(CLI::App& app, std::string& device, std::string& tracer)
   app.option_defaults()->group("Device");
   add_parsed(app, "--device", device, parse_device, "INDEX|software",
              "The EGL device (see `lightwell devices`); without it the first GPU, else the software device");
-  add_parsed(app, "--tracer", tracer, parse_tracer, "embree|compute",
-             "Who traces rays; without it what suits the device");
+  add_parsed(app, "--tracer", tracer, parse_tracer, "embree|compute|brute-force",
+             "Who traces rays; without it what suits the device. brute-force tries every triangle with every ray");
 }
 
 }  // namespace lightwell

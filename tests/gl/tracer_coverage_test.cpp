@@ -34,7 +34,7 @@ TraceWorld covered_world(AlphaMode mode) {
 }
 
 TEST_F(TracerTest, TracersAgreeOnCoverage) {
-  if (tracers_.size() < 2) GTEST_SKIP() << "built without Embree: there is one tracer";
+  if (!tracers_.contains("embree")) GTEST_SKIP() << "built without Embree";
   for (const AlphaMode mode : {AlphaMode::kMask, AlphaMode::kBlend}) {
     const TraceWorld world = covered_world(mode);
     const std::vector<Ray> rays = random_rays(world, 200'000, 31);

@@ -20,6 +20,7 @@ constexpr double kTieDistance = 1e-4;      // relative: nearer triangles than th
 constexpr float kEdgeBarycentric = 1e-4f;  // a hit nearer to its triangle's edge may as well pass it
 constexpr double kMostTies = 1e-3;         // of all rays
 
+constexpr double kMostBruteForceTests = 1e8;  // rays times triangles: seconds
 constexpr std::uint32_t kMostVisibilityRays = 100'000;
 
 struct Agreement {
@@ -81,6 +82,12 @@ void expect_lists(const HitList& list, const std::vector<Hit>& hits) {
   EXPECT_TRUE(listed == expected) << "the list of hits differs from the hits";
 }
 
+std::size_t count_triangles(const TraceWorld& world) {
+  std::size_t count = 0;
+  for (const Instance& instance : world.instances) count += instance.primitive->indices.size() / 3;
+  return count;
+}
+
 TraceResult trace(Tracer& tracer, const std::vector<Ray>& rays) {
   const auto count = static_cast<std::uint32_t>(rays.size());
   const std::uint32_t visibility_count = std::min(count, kMostVisibilityRays);
@@ -110,10 +117,11 @@ std::map<std::string, std::unique_ptr<Tracer>> TracerTest::tracers_;
 void TracerTest::SetUpTestSuite() {
   context_ = gl::Context::create();
   tracers_["compute"] = make_compute_tracer();
+  tracers_["brute-force"] = make_brute_force_tracer();
 #ifdef LIGHTWELL_HAS_EMBREE
   tracers_["embree"] = make_embree_tracer();
 #else
-  std::cout << "built without Embree: the compute tracer alone is tested\n";
+  std::cout << "built without Embree: the tracers of the device alone are tested\n";
 #endif
 }
 
@@ -128,7 +136,10 @@ void TracerTest::TearDown() {
 
 std::map<std::string, TraceResult> TracerTest::trace_all(const TraceWorld& world, const std::vector<Ray>& rays) {
   std::map<std::string, TraceResult> results;
+  const double tests = static_cast<double>(rays.size()) * static_cast<double>(count_triangles(world));
   for (auto& [name, tracer] : tracers_) {
+    EXPECT_EQ(tracer->name(), name);
+    if (name == "brute-force" && tests > kMostBruteForceTests) continue;
     tracer->update(world.scene());
     results[name] = trace(*tracer, rays);
     std::size_t wrong = 0;

@@ -28,7 +28,8 @@ class TracerTest : public testing::Test {
   static void TearDownTestSuite();
   void TearDown() override;
 
-  /// Every tracer's results for these rays, by its name: any_hit and the list of hits are held against closest_hit.
+  /// Every tracer's results for these rays, by its name (without brute force where it would take too long): any_hit and
+  /// the list of hits are held against closest_hit.
   static std::map<std::string, TraceResult> trace_all(const TraceWorld& world, const std::vector<Ray>& rays);
 
   /// `covered`: a hit whose texel or threshold the last bit of a barycentric decides may differ as well.
