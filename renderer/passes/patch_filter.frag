@@ -29,6 +29,21 @@ vec4 value_at(ivec2 texel) {
 vec4 value_at(ivec2 texel) { return texelFetch(map, texel, 0); }
 #endif
 
+// The variance about a texel whose own is known. Its own frames may all have missed light that is rare, and then they
+// would call black certain: neighbours that have met it know better.
+float variance_about(ivec2 texel, float own, ivec2 size) {
+  if (own >= kUnknown) return own;
+  float sum = 0.0, count = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      const float variance = value_at(clamp(texel + ivec2(x, y), ivec2(0), size - 1)).a;
+      const bool known = variance >= 0.0 && variance < kUnknown;
+      sum += known ? variance : 0.0;
+      count += known ? 1.0 : 0.0;
+    }
+  return max(own, sum / max(count, 1.0));
+}
+
 #ifdef LAST
 // Premultiplied by validity, for scaling up.
 vec4 finished(vec4 value) { return value.a < 0.0 ? vec4(0.0) : vec4(value.rgb, 1.0); }
@@ -49,7 +64,7 @@ void main() {
   const vec4 normal_roughness = unpack_normal_roughness(here.w);
   const float plane_scale = 1.0 / (kPlaneTolerance * max(distance(position_ws, camera.eye_ws.xyz), 1e-6));
   const float center_luminance = luminance(center.rgb);
-  const float luminance_scale = 1.0 / (luminance_tolerance * sqrt(center.a) + 1e-6);
+  const float luminance_scale = 1.0 / (luminance_tolerance * sqrt(variance_about(texel, center.a, size)) + 1e-6);
   const float kernel[2] = float[](0.5, 0.25);  // a tent: a third of the taps of the usual B3 spline
   vec3 sum = vec3(0.0);
   float variance = 0.0, weights = 0.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "renderer/scene/builtin.h"
 #include "tests/image/film.h"
 
 namespace lightwell::testing {
@@ -82,6 +83,37 @@ TEST(RealtimeHistory, ATeleportedBoxLeavesNoGhost) {
   const double ghost = mean_of(pixels, low, high) / mean_of(truth, low, high) - 1.0;
   std::printf("after 8 frames a teleported box leaves %+.2f %%\n", 100.0 * ghost);
   EXPECT_LT(std::abs(ghost), 0.02);
+}
+
+// Where few rays find the light, all frames of a texel may have missed it: what its neighbours know keeps it from being
+// black for certain.
+TEST(RealtimeHistory, RareLightInMotionLeavesNoBlackTexels) {
+  const Scene scene = builtin_scene("atrium").value();
+  const auto view = shared_renderer().make_view();
+  FrameRequest request;
+  request.size_px = {128, 96};
+  request.settings = realtime_settings(2);
+  request.settings.samples = 32;
+  request.settings.indirect_size = 128;
+  request.settings.view = ViewKind::kIndirect;
+  request.want_linear = true;
+  Pixels pixels{request.size_px, {}};
+  for (int frame = 0; frame < 8; ++frame) {
+    request.time_s = frame / 15.0;
+    request.camera = pose_at(scene, request.time_s).cameras.at(0);
+    Result<Frame> rendered = shared_renderer().render(scene, request, *view);
+    ASSERT_TRUE(rendered.ok());
+    pixels.rgb = std::move(rendered->linear_rgb);
+  }
+  int black = 0;
+  for (int y = 1; y + 1 < request.size_px.y; ++y)
+    for (int x = 1; x + 1 < request.size_px.x; ++x) {
+      float around = 0.0f;
+      for (int i = 0; i < 9; ++i) around += pixels.at(x + i % 3 - 1, y + i / 3 - 1).r / 9.0f;
+      black += pixels.at(x, y).r < 0.05f * around;
+    }
+  std::printf("%d of %d pixels are far darker than what is around them\n", black, 126 * 94);
+  EXPECT_LT(black, 126 * 94 / 100);
 }
 
 TEST(RealtimeHistory, AStillPictureConvergesAndDoesNotFlicker) {
