@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "renderer/passes/camera_block.h"
+#include "renderer/passes/indirect_map_grid.h"
 
 namespace lightwell {
 
@@ -64,7 +65,7 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
 
 PatchGrid RealtimeMethod::grid_of(const FrameContext& frame) const {
   PatchGrid grid;
-  grid.map_size_px = PatchGrid::map_size(frame.size_px, frame.settings.indirect_size);
+  grid.map_size_px = indirect_map_size(frame.size_px, frame.settings.indirect_size);
   grid.picture_size_px = frame.size_px;
   grid.rays_per_texel = std::max(1u, static_cast<std::uint32_t>(frame.settings.samples) / kFramesOfSamples);
   grid.frame_number = frame_number_;

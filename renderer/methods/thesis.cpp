@@ -10,13 +10,6 @@ namespace {
 // Records of the occlusion map at once, and candidates of patches: 32 to 96 MiB on the device, whatever the settings.
 constexpr std::uint32_t kMostRecords = 1u << 21, kMostCandidates = 1u << 22;
 
-// Every pixel may turn out to be a patch of its own, beside those of the map.
-std::uint32_t most_patches(const IndirectMapGrid& grid, const Settings& settings) {
-  const auto side = static_cast<std::uint32_t>(grid.patch_side);
-  const bool shared = side > 1 || settings.triangle_groups > 1;
-  return grid.most_slots() / (side * side) + (shared ? grid.most_slots() : 0);
-}
-
 std::uint32_t directions_per_batch(const IndirectMapGrid& grid, const Settings& settings) {
   const std::uint32_t by_records = kMostRecords / grid.most_slots();
   const std::uint32_t by_candidates =
@@ -78,12 +71,12 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   compose_pass_.resize(g_buffer_pass_.g_buffer().depth);
   const std::uint32_t batch = directions_per_batch(grid, frame.settings);
   active_blocks_pass_.resize(grid);
-  patches_pass_.resize(grid);
+  patches_pass_.resize(grid, frame.settings);
   const std::uint32_t most_rays = most_patches(grid, frame.settings) * batch;
   directions_pass_.resize(most_rays);
   occlusion_.resize(grid.most_slots() * batch);
   const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
-  if (groups > 1 || grid.patch_side > 1) candidates_.reserve(std::uint64_t{most_rays} * groups * sizeof(Hit));
+  if (have_candidates(frame.settings)) candidates_.reserve(std::uint64_t{most_rays} * groups * sizeof(Hit));
   if (groups > 1) candidates_of_group_.reserve(std::uint64_t{most_rays} * sizeof(Hit));
   map_view_pass_.resize(grid.map_size_px);
   gather_pass_.resize(grid.map_size_px);
@@ -122,7 +115,7 @@ void ThesisMethod::find_patches(FrameContext& frame, const GBuffer& g_buffer, co
   patches_ = &patches_pass_.run(g_buffer, grid, *active_blocks_, frame.settings);
   if (frame.settings.triangle_groups > 1)
     frame.triangle_groups.update(frame.trace_scene, static_cast<std::uint32_t>(frame.settings.triangle_groups));
-  if (patches_->are_shared) frame.timer.mark("patches");
+  if (patches_->have_candidates) frame.timer.mark("patches");
 }
 
 // The directions [first, first + batch) and their hits. A single batch is made and traced once for all bounces.
@@ -142,7 +135,7 @@ Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buff
 void ThesisMethod::trace(FrameContext& frame, const Directions& directions) {
   const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
   frame.rays += std::uint64_t{directions.ray_count} * groups;
-  if (!patches_->are_shared) {
+  if (!patches_->have_candidates) {
     frame.tracer.closest_hit(directions.rays, directions.ray_count, occlusion_.hits, &occlusion_.list);
     frame.timer.mark("trace");
     return;

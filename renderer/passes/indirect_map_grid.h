@@ -9,6 +9,14 @@
 
 namespace lightwell {
 
+/// The size of an indirect map whose longer side has `size` pixels, never more than the picture, and the picture's
+/// shape.
+inline glm::ivec2 indirect_map_size(glm::ivec2 picture_size_px, int size) {
+  const float scale =
+      std::min(1.0f, static_cast<float>(size) / static_cast<float>(std::max(picture_size_px.x, picture_size_px.y)));
+  return glm::max(glm::ivec2(glm::vec2(picture_size_px) * scale + 0.5f), glm::ivec2(1));
+}
+
 struct IndirectMapGrid {
   glm::ivec2 map_size_px{1};
   glm::ivec2 picture_size_px{1};
@@ -23,11 +31,8 @@ struct IndirectMapGrid {
 
   /// A map whose longer side has `size` pixels (never more than the picture) and the picture's shape.
   static IndirectMapGrid over(glm::ivec2 picture_size_px, int size) {
-    const float scale =
-        std::min(1.0f, static_cast<float>(size) / static_cast<float>(std::max(picture_size_px.x, picture_size_px.y)));
-    const glm::ivec2 map = glm::max(glm::ivec2(glm::vec2(picture_size_px) * scale + 0.5f), glm::ivec2(1));
     IndirectMapGrid grid;
-    grid.map_size_px = map;
+    grid.map_size_px = indirect_map_size(picture_size_px, size);
     grid.picture_size_px = picture_size_px;
     return grid;
   }

@@ -1,7 +1,6 @@
 // The indirect map of `realtime` in one frame; the uniforms of shaders/patch_samples.glsl.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -20,13 +19,6 @@ struct PatchGrid {
     return static_cast<std::uint32_t>(map_size_px.x) * static_cast<std::uint32_t>(map_size_px.y);
   }
   std::uint32_t samples() const { return texels() * rays_per_texel; }
-
-  /// The size of a map whose longer side has `size` texels, never more than the picture, and the picture's shape.
-  static glm::ivec2 map_size(glm::ivec2 picture_size_px, int size) {
-    const float scale =
-        std::min(1.0f, static_cast<float>(size) / static_cast<float>(std::max(picture_size_px.x, picture_size_px.y)));
-    return glm::max(glm::ivec2(glm::vec2(picture_size_px) * scale + 0.5f), glm::ivec2(1));
-  }
 };
 
 class PatchGridUniforms {

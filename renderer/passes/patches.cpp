@@ -13,6 +13,11 @@ constexpr std::uint32_t kBlockSlots = 256;
 
 }  // namespace
 
+std::uint32_t most_patches(const IndirectMapGrid& grid, const Settings& settings) {
+  const auto side = static_cast<std::uint32_t>(grid.patch_side);
+  return grid.most_slots() / (side * side) + (have_candidates(settings) ? grid.most_slots() : 0);
+}
+
 PatchesPass::PatchesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : scale_down_(
           [&shaders](const gl::Defines& defines) { return shaders.compute("passes/scale_down.comp", defines); }),
@@ -25,13 +30,12 @@ PatchesPass::PatchesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
   patches_.pixel_origins = gl::Buffer("pixel origins", 0, buffers);
 }
 
-void PatchesPass::resize(const IndirectMapGrid& grid) {
+void PatchesPass::resize(const IndirectMapGrid& grid, const Settings& settings) {
+  if (!have_candidates(settings)) return;
   const std::uint64_t slots = grid.most_slots();
-  const std::uint64_t side = static_cast<std::uint64_t>(grid.patch_side);
-  const std::uint64_t most_patches = slots / (side * side) + slots;
   unmatched_.reserve(slots / kBlockSlots * sizeof(std::uint32_t));
   first_of_block_.reserve(slots / kBlockSlots * sizeof(std::uint32_t));
-  patches_.points.reserve(most_patches * 2 * sizeof(glm::uvec4));
+  patches_.points.reserve(std::uint64_t{most_patches(grid, settings)} * 2 * sizeof(glm::uvec4));
   patches_.point_texels.attach(patches_.points);
   patches_.references.reserve(slots * sizeof(std::uint32_t));
   patches_.reference_texels.attach(patches_.references);
@@ -67,9 +71,9 @@ std::uint32_t PatchesPass::number_unmatched(std::uint32_t blocks) {
 const Patches& PatchesPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
                                 const Settings& settings) {
   const auto pixels_of_patch = static_cast<std::uint32_t>(grid.patch_side * grid.patch_side);
-  patches_.are_shared = grid.patch_side > 1 || settings.triangle_groups > 1;
+  patches_.have_candidates = have_candidates(settings);
   patches_.count = patches_.first_unmatched = blocks.slots() / pixels_of_patch;
-  if (!patches_.are_shared || blocks.count == 0) return patches_;
+  if (!patches_.have_candidates || blocks.count == 0) return patches_;
   g_buffer.bind();
   blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
   patches_.points.bind_storage(BINDING_PATCH_POINTS);

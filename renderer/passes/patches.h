@@ -14,7 +14,7 @@ namespace lightwell {
 /// What the pixels of the indirect map trace their rays by. With patches of one pixel and triangles in one group, every
 /// pixel's slot is a patch and the buffers are not filled.
 struct Patches {
-  bool are_shared = false;               // patches have candidates, not hits
+  bool have_candidates = false;          // patches have candidates, not hits
   std::uint32_t count = 0;               // of patches: those of the map, then pixels that are similar to none of them
   std::uint32_t first_unmatched = 0;     // such a pixel is a patch of its own, from this number on
   gl::Buffer points{"patch points", 0};  // 2 uvec4 a patch: shaders/patches.glsl
@@ -24,14 +24,22 @@ struct Patches {
   gl::BufferTexture reference_texels{"reference map", GL_R32UI};
   gl::BufferTexture origin_texels{"pixel origins", GL_RGBA32UI};
   /// Programs over patches or their pixels are made with these.
-  gl::Defines defines() const { return are_shared ? gl::Defines{"PATCHES 1"} : gl::Defines{}; }
+  gl::Defines defines() const { return have_candidates ? gl::Defines{"PATCHES 1"} : gl::Defines{}; }
 };
+
+/// Whether patches have candidates, not hits: they have several pixels, or triangles are in groups.
+inline bool have_candidates(const Settings& settings) {
+  return settings.patch > 1 || settings.triangle_groups > 1;
+}
+
+/// Patches::count at most: every pixel may turn out to be like no patch of the map.
+std::uint32_t most_patches(const IndirectMapGrid& grid, const Settings& settings);
 
 class PatchesPass {
  public:
   /// `buffers`: host-visible where a native tracer reads the pixels' origins.
   PatchesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
-  void resize(const IndirectMapGrid& grid);
+  void resize(const IndirectMapGrid& grid, const Settings& settings);
   /// Waits for the device where patches are shared: how many pixels are unmatched decides how many rays are made.
   const Patches& run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
                      const Settings& settings);
