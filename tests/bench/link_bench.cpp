@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 
+#include "tests/bench/program_options.h"
 #include "tests/bench/report.h"
 #include "tests/bench/slow_link.h"
 #include "tests/bench/stream_viewer.h"
@@ -84,34 +85,10 @@ int run(const std::string& program, double megabits, double round_trip_ms, doubl
 }  // namespace lightwell::bench
 
 int main(int count, char** arguments) {
-  std::string program = LIGHTWELL_PROGRAM;
+  using namespace lightwell::bench;
   double megabits = 4.0, round_trip_ms = 100.0, seconds = 12.0;
-  bool as_json = false, check = false;
-  for (int i = 1; i < count; ++i) {
-    const std::string argument = arguments[i];
-    const bool has_value = i + 1 < count;
-    if (argument == "--json") {
-      as_json = true;
-    } else if (argument == "--check") {
-      check = true;
-    } else if (argument == "--program" && has_value) {
-      program = arguments[++i];
-    } else if (argument == "--megabits" && has_value) {
-      megabits = std::atof(arguments[++i]);
-    } else if (argument == "--round-trip-ms" && has_value) {
-      round_trip_ms = std::atof(arguments[++i]);
-    } else if (argument == "--seconds" && has_value) {
-      seconds = std::atof(arguments[++i]);
-    } else {
-      std::cerr << "usage: link_bench [--json] [--check] [--megabits N] [--round-trip-ms N] [--seconds N] "
-                   "[--program lightwell]\n";
-      return 2;
-    }
-  }
-  try {
-    return lightwell::bench::run(program, megabits, round_trip_ms, seconds, as_json, check);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
-    return 1;
-  }
+  return bench_main(
+      count, arguments, "A stream over a slow link",
+      {{"--megabits", megabits}, {"--round-trip-ms", round_trip_ms}, {"--seconds", seconds}},
+      [&](const ProgramOptions& o) { return run(o.program, megabits, round_trip_ms, seconds, o.as_json, o.check); });
 }

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <thread>
 
+#include "tests/bench/program_options.h"
 #include "tests/bench/report.h"
 #include "tests/bench/stream_viewer.h"
 #include "tests/integration/glb_writer.h"
@@ -183,28 +184,9 @@ int run(const std::string& program, double minutes, bool as_json, bool check) {
 }  // namespace lightwell::bench
 
 int main(int count, char** arguments) {
-  std::string program = LIGHTWELL_PROGRAM;
+  using namespace lightwell::bench;
   double minutes = 10.0;
-  bool as_json = false, check = false;
-  for (int i = 1; i < count; ++i) {
-    const std::string argument = arguments[i];
-    if (argument == "--json") {
-      as_json = true;
-    } else if (argument == "--check") {
-      check = true;
-    } else if (argument == "--program" && i + 1 < count) {
-      program = arguments[++i];
-    } else if (argument == "--minutes" && i + 1 < count) {
-      minutes = std::atof(arguments[++i]);
-    } else {
-      std::cerr << "usage: soak_bench [--json] [--check] [--minutes N] [--program lightwell]\n";
-      return 2;
-    }
-  }
-  try {
-    return lightwell::bench::run(program, minutes, as_json, check);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
-    return 1;
-  }
+  return bench_main(count, arguments, "Edits, uploads and reconnections for minutes: memory, errors, lost sessions",
+                    {{"--minutes", minutes}},
+                    [&](const ProgramOptions& o) { return run(o.program, minutes, o.as_json, o.check); });
 }

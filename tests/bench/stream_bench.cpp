@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/bench/program_options.h"
 #include "tests/bench/report.h"
 #include "tests/bench/stream_viewer.h"
 
@@ -98,28 +99,8 @@ int run(const std::string& program, double seconds, bool as_json, bool check) {
 }  // namespace lightwell::bench
 
 int main(int count, char** arguments) {
-  std::string program = LIGHTWELL_PROGRAM;
+  using namespace lightwell::bench;
   double seconds = 10.0;
-  bool as_json = false, check = false;
-  for (int i = 1; i < count; ++i) {
-    const std::string argument = arguments[i];
-    if (argument == "--json") {
-      as_json = true;
-    } else if (argument == "--check") {
-      check = true;
-    } else if (argument == "--program" && i + 1 < count) {
-      program = arguments[++i];
-    } else if (argument == "--seconds" && i + 1 < count) {
-      seconds = std::atof(arguments[++i]);
-    } else {
-      std::cerr << "usage: stream_bench [--json] [--check] [--seconds N] [--program lightwell]\n";
-      return 2;
-    }
-  }
-  try {
-    return lightwell::bench::run(program, seconds, as_json, check);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
-    return 1;
-  }
+  return bench_main(count, arguments, "Frames a second and latency of a stream on loopback", {{"--seconds", seconds}},
+                    [&](const ProgramOptions& o) { return run(o.program, seconds, o.as_json, o.check); });
 }
