@@ -49,8 +49,9 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   if (change_.light_share > kGreatChange) filled_from_ = frame_number_;
   lights_.prepare(scene, frame.pose);
   lights_.bind();
+  motion_.follow(frame.pose);
   g_buffer_pass_.resize(frame.size_px);
-  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame_number_);
+  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame_number_, &motion_);
   frame.timer.mark("g-buffer");
   punctual_light_pass_.resize(frame.size_px);
   const TracedLight& direct = punctual_light_pass_.run(frame, g_buffer, lights_, frame_number_);

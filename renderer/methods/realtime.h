@@ -6,6 +6,7 @@
 #include "renderer/methods/frame_context.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/g_buffer.h"
+#include "renderer/passes/instance_motion.h"
 #include "renderer/passes/light_table.h"
 #include "renderer/passes/patch_samples.h"
 #include "renderer/passes/punctual_light.h"
@@ -36,6 +37,7 @@ class RealtimeMethod {
   RadianceCache cache_;
   ReconstructionPass reconstruction_pass_;
   ComposePass compose_pass_;
+  InstanceMotion motion_;
   SceneChanges changes_;
   SceneChange change_;  // in this frame
   std::uint32_t frame_number_ = 0;

@@ -267,6 +267,19 @@ void DeviceScene::set_vertex_array() {
   for (const GLuint attribute : {4u, 5u, 6u, 7u}) enable(attribute, 2);
 }
 
+void DeviceScene::feed_instances_before(const gl::Buffer& instances) const {
+  glVertexArrayVertexBuffer(vertex_array_, 3, instances.id(), 0, sizeof(DeviceInstanceBefore));
+  glVertexArrayBindingDivisor(vertex_array_, 3, 1);
+  for (GLuint row = 0; row < 3; ++row)
+    glVertexArrayAttribFormat(vertex_array_, 8 + row, 4, GL_FLOAT, GL_FALSE,
+                              row * static_cast<GLuint>(sizeof(glm::vec4)));
+  glVertexArrayAttribIFormat(vertex_array_, 11, 1, GL_UNSIGNED_INT, offsetof(DeviceInstanceBefore, first_position));
+  for (const GLuint attribute : {8u, 9u, 10u, 11u}) {
+    glEnableVertexArrayAttrib(vertex_array_, attribute);
+    glVertexArrayAttribBinding(vertex_array_, attribute, 3);
+  }
+}
+
 void DeviceScene::bind() const {
   textures_.front()->bind();
   vertex_texels_.bind(UNIT_VERTICES);

@@ -73,6 +73,9 @@ class DeviceScene {
   bool has_coverage() const { return has_coverage_; }
   std::uint64_t triangles() const { return triangles_; }
 
+  /// What the motion variant of g_buffer.vert is fed with as well: a DeviceInstanceBefore for each instance.
+  void feed_instances_before(const gl::Buffer& instances) const;
+
   /// Draws all instances in three groups; `begin_group` sets the state of each before it is drawn.
   template <class BeginGroup>
   void draw(const BeginGroup& begin_group) const {

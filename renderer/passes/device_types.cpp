@@ -125,6 +125,11 @@ DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t f
   return packed;
 }
 
+DeviceInstanceBefore pack_instance_before(const glm::mat4& world_from_object) {
+  const glm::mat4 rows = glm::transpose(world_from_object);
+  return {{rows[0], rows[1], rows[2]}};
+}
+
 bool is_lambert(const Material& material) {
   return material.metallic_factor == 0.0f && material.specular_factor == 0.0f;
 }

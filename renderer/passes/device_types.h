@@ -37,6 +37,14 @@ struct DeviceInstance {
   std::uint32_t flags;
 };
 static_assert(sizeof(DeviceInstance) == 64);
+/// Where an instance was in the frame before: attributes of g_buffer.vert, of its motion variant alone.
+struct DeviceInstanceBefore {
+  glm::vec4 world_from_object[3];             // rows
+  std::uint32_t first_position = 0xffffffff;  // of its deformed vertices before; all bits set: they are as they were
+  std::uint32_t padding[3] = {};
+};
+static_assert(sizeof(DeviceInstanceBefore) == 64);
+
 constexpr std::uint32_t kDeviceInstanceMirrored = 1;
 constexpr std::uint32_t kDeviceMaterialMask = 1, kDeviceMaterialBlend = 2;
 constexpr std::uint32_t kDeviceMaterialDoubleSided = 4, kDeviceMaterialUnlit = 8;
@@ -91,6 +99,7 @@ std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const Deform
 std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive, const DeformedVertices* deformed);
 DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_vertex,
                              std::uint32_t first_triangle, std::uint32_t material);
+DeviceInstanceBefore pack_instance_before(const glm::mat4& world_from_object);
 /// True if a material needs more than the plain BRDF.
 bool has_lobes(const Material& material);
 

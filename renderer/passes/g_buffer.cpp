@@ -10,6 +10,7 @@ void GBuffer::bind() const {
   emission.bind(UNIT_G_EMISSION);
   depth.bind(UNIT_G_DEPTH);
   if (lobes) lobes.bind(UNIT_G_LOBES);
+  if (has_motion) motion.bind(UNIT_G_MOTION);
 }
 
 GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
@@ -24,21 +25,43 @@ void GBufferPass::resize(glm::ivec2 size_px) {
   buffer_.emission = gl::Texture("g-buffer emission", GL_RGBA16F, size_px);
   buffer_.depth = gl::Texture("g-buffer depth", GL_DEPTH_COMPONENT32F, size_px);
   buffer_.lobes = {};
-  framebuffer_ = gl::Framebuffer("g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission}, &buffer_.depth);
+  buffer_.motion = {};
+  for (auto& framebuffers : framebuffers_)
+    for (gl::Framebuffer& framebuffer : framebuffers) framebuffer = {};
 }
 
-const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed) {
-  if (scene.has_lobes() && !buffer_.lobes) {
-    buffer_.lobes = gl::Texture("g-buffer lobes", GL_RGBA32UI, buffer_.size_px());
-    framebuffer_with_lobes_ = gl::Framebuffer(
-        "g-buffer", {&buffer_.surface, &buffer_.material, &buffer_.emission, &buffer_.lobes}, &buffer_.depth);
+const gl::Framebuffer& GBufferPass::framebuffer_of(bool lobes, bool motion) {
+  GBuffer& b = buffer_;
+  if (lobes && !b.lobes) b.lobes = gl::Texture("g-buffer lobes", GL_RGBA32UI, b.size_px());
+  if (motion && !b.motion) b.motion = gl::Texture("g-buffer motion", GL_RGBA16F, b.size_px());
+  gl::Framebuffer& framebuffer = framebuffers_[lobes][motion];
+  if (framebuffer) return framebuffer;
+  const gl::Texture* const always[] = {&b.surface, &b.material, &b.emission};
+  const auto make = [&](auto... more) {
+    return gl::Framebuffer("g-buffer", {always[0], always[1], always[2], more...}, &b.depth);
+  };
+  framebuffer = lobes && motion ? make(&b.lobes, &b.motion)
+                : lobes         ? make(&b.lobes)
+                : motion        ? make(&b.motion)
+                                : make();
+  return framebuffer;
+}
+
+const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion) {
+  buffer_.has_motion = motion && motion->moving();
+  gl::Defines defines = gl::joined(scene.texture_defines(), scene.lobe_defines());
+  if (buffer_.has_motion) {
+    scene.feed_instances_before(motion->instances());
+    motion->bind();
+    defines.emplace_back("MOTION 1");
+    if (motion->deforming()) defines.emplace_back("DEFORMED_MOTION 1");
   }
-  const gl::Framebuffer& framebuffer = scene.has_lobes() ? framebuffer_with_lobes_ : framebuffer_;
+  const gl::Framebuffer& framebuffer = framebuffer_of(scene.has_lobes(), buffer_.has_motion);
   framebuffer.bind();
   const GLfloat nothing_there = 0.0f;  // where it stays, nobody looks at the other textures
   glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &nothing_there);
 
-  Variant& variant = variants_.with(gl::joined(scene.texture_defines(), scene.lobe_defines()));
+  Variant& variant = variants_.with(defines);
   variant.program->use();
   variant.frame_seed = seed;
   glEnable(GL_DEPTH_TEST);

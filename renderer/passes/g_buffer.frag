@@ -28,6 +28,15 @@ layout(location = 2) out vec4 out_emission;
 layout(location = 3) out uvec4 out_lobes;
 #endif
 
+#ifdef MOTION
+in vec3 displacement_ws;
+#ifdef HAS_LOBES
+layout(location = 4) out vec4 out_motion;
+#else
+layout(location = 3) out vec4 out_motion;
+#endif
+#endif
+
 uniform uint frame_seed;
 
 // Coverage as a threshold that changes from pixel to pixel and frame to frame: the mean of many frames is the blend.
@@ -78,6 +87,9 @@ void main() {
   out_material.y = packUnorm2x16(vec2(f0, lobes.specular_factor));
   out_lobes = unlit ? uvec4(0u) : pack_g_lobes(lobes, behind);
   surface.emission *= 1.0 - lobes.clearcoat * mix(kClearcoatF0, 1.0, schlick_weight(dot(lobes.clearcoat_normal_ws, to_camera)));
+#endif
+#ifdef MOTION
+  out_motion = vec4(displacement_ws, 0.0);
 #endif
   const float kLargestHalf = 65504.0;
   out_emission = vec4(min(unlit ? surface.base_color.rgb : surface.emission, kLargestHalf), unlit ? 1.0 : 0.0);

@@ -4,6 +4,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/device_scene.h"
+#include "renderer/passes/instance_motion.h"
 
 namespace lightwell {
 
@@ -13,7 +14,10 @@ struct GBuffer {
   gl::Texture material;  // RG32UI: material, roughness, dielectric reflectance
   gl::Texture emission;  // RGBA16F: nit; a = 1 where unlit
   gl::Texture lobes;     // RGBA32UI, of scenes whose materials have lobes beyond the plain BRDF: see shaders/lobes.glsl
+  gl::Texture motion;    // RGBA16F, metres in the world since the frame before; where `has_motion` alone
   gl::Texture depth;     // 32-bit float, reversed; 0 where there is nothing
+
+  bool has_motion = false;  // something has moved since the frame before, and its motion was asked for
 
   glm::ivec2 size_px() const { return depth.size_px(); }
   void bind() const;
@@ -24,8 +28,9 @@ class GBufferPass {
   explicit GBufferPass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 size_px);
   const GBuffer& g_buffer() const { return buffer_; }
-  /// The camera block must be bound. `seed` decides the coverage of blended surfaces.
-  const GBuffer& run(const DeviceScene& scene, std::uint32_t seed);
+  /// The camera block must be bound. `seed` decides the coverage of blended surfaces. With `motion` the displacements
+  /// are drawn as well when something moves.
+  const GBuffer& run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion = nullptr);
 
  private:
   struct Variant {
@@ -33,9 +38,10 @@ class GBufferPass {
     gl::ProgramPtr program;
     gl::Uniform<std::uint32_t> frame_seed;
   };
+  const gl::Framebuffer& framebuffer_of(bool lobes, bool motion);
   gl::Variants<Variant> variants_;
   GBuffer buffer_;
-  gl::Framebuffer framebuffer_, framebuffer_with_lobes_;
+  gl::Framebuffer framebuffers_[2][2];  // [lobes][motion], made when first drawn to
 };
 
 }  // namespace lightwell

@@ -21,6 +21,10 @@ layout(location = 0) out vec4 out_map;
 layout(location = 1) out vec4 out_moments;
 layout(location = 2) out uvec4 out_guide;
 
+#ifdef MOTION
+layout(binding = UNIT_G_MOTION) uniform sampler2D g_motion;  // metres since the frame before
+#endif
+
 uniform uint sample_count;
 uniform uint path_stride;
 uniform uint path_phase;
@@ -32,6 +36,7 @@ uniform int has_history;
 
 const float kPlaneTolerance = 0.02;  // of the distance from the eye
 const float kLeastCosine = 0.9;
+const float kMostRougher = 0.2;
 const float kGreatest = 1e15;
 const float kLateFrames = 6.0;
 const float kMostDeviations = 4.0;   // of the late frames' mean
@@ -80,13 +85,22 @@ float frames_left_by_change(ivec2 texel, float frames) {
   return frames > 2.0 * kLateFrames && ratio > 1.0 ? max(kLateFrames / ratio, 1.0) : frames;
 }
 
-void add_tap(inout History history, ivec2 texel, float weight, vec3 position_ws, vec3 normal_ws, float plane_scale) {
+// What must be the same a frame ago, for the light found then to count.
+struct Sought {
+  vec3 position_ws;  // where the surface was
+  vec3 normal_ws;
+  float roughness;
+  float plane_scale;
+};
+
+void add_tap(inout History history, ivec2 texel, float weight, Sought sought) {
   const ivec2 inside = clamp(texel, ivec2(0), map_size_px - 1);
   const uvec4 there = texelFetch(previous_guide, inside, 0);
   const vec4 value = texelFetch(previous_map, inside, 0);
-  const vec3 other_normal_ws = unpack_normal_roughness(there.w).xyz;
-  const float off_plane = abs(dot(uintBitsToFloat(there.xyz) - position_ws, normal_ws)) * plane_scale;
-  const bool same = inside == texel && value.a > 0.0 && off_plane < 1.0 && dot(other_normal_ws, normal_ws) > kLeastCosine;
+  const vec4 other = unpack_normal_roughness(there.w);
+  const float off_plane = abs(dot(uintBitsToFloat(there.xyz) - sought.position_ws, sought.normal_ws)) * sought.plane_scale;
+  const bool same = inside == texel && value.a > 0.0 && off_plane < 1.0 && dot(other.xyz, sought.normal_ws) > kLeastCosine &&
+                    abs(other.w - sought.roughness) < kMostRougher;
   if (!same) return;
   history.light += weight * value.rgb;
   history.frames += weight * value.a;
@@ -94,29 +108,28 @@ void add_tap(inout History history, ivec2 texel, float weight, vec3 position_ws,
   history.weight += weight;
 }
 
-// Of the place where the texel's surface was a frame ago.
-History history_at(GBufferPoint point, vec2 pixel_center, vec2 texel_center) {
+// Where the point was seen a frame ago, in pixels; not in the picture if it was behind the camera.
+vec2 pixel_before(vec3 position_before_ws) {
+  const vec4 clip = previous_clip_from_world * vec4(position_before_ws, 1.0);
+  return clip.w > 0.0 ? (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size_px.xy) : vec2(-1e6);
+}
+
+// About `before`, the place in the map where the surface was; texel n lies at n.
+History history_at(vec2 before, Sought sought) {
   History history = History(vec3(0.0), 0.0, vec3(0.0), 0.0);
-  const vec4 clip = previous_clip_from_world * vec4(point.position_ws, 1.0);
-  const vec2 before_px = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size_px.xy);
-  if (has_history == 0 || clip.w <= 0.0) return history;
-  // By the texel's middle, not by the pixel's: what does not move is not resampled and stays sharp.
-  const vec2 before = texel_center + (before_px - pixel_center) / pixels_per_texel - 0.5;
+  if (has_history == 0) return history;
   const ivec2 corner = ivec2(floor(before));
   const vec2 fraction = before - vec2(corner);
-  const float plane_scale = 1.0 / (kPlaneTolerance * point.view_depth_m);
   for (int i = 0; i < 4; ++i) {
     const ivec2 offset = ivec2(i & 1, i >> 1);
     const vec2 share = mix(1.0 - fraction, fraction, vec2(offset));
-    if (share.x * share.y > 1e-3)
-      add_tap(history, corner + offset, share.x * share.y, point.position_ws, point.normal_ws, plane_scale);
+    if (share.x * share.y > 1e-3) add_tap(history, corner + offset, share.x * share.y, sought);
   }
   if (history.weight > 0.0) return history;
   // An edge within the patch: its other surface was seen last. A neighbour knows this one.
   const ivec2 nearest = ivec2(floor(before + 0.5));
   for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x)
-      add_tap(history, nearest + ivec2(x, y), 1.0, point.position_ws, point.normal_ws, plane_scale);
+    for (int x = -1; x <= 1; ++x) add_tap(history, nearest + ivec2(x, y), 1.0, sought);
   return history;
 }
 
@@ -135,10 +148,17 @@ void main() {
   const vec3 samples = light_of_samples(uint(texel.y * map_size_px.x + texel.x));
   const vec3 now = mix(vec3(0.0), clamp(samples, 0.0, kGreatest), equal(samples, samples));
   const float now_luminance = luminance(now);
-  const History history = history_at(point, vec2(pixel) + 0.5, vec2(texel) + 0.5);
+  Sought sought = Sought(point.position_ws, point.normal_ws, sqrt(point.brdf.alpha), 1.0 / (kPlaneTolerance * point.view_depth_m));
+#ifdef MOTION
+  sought.position_ws -= texelFetch(g_motion, pixel, 0).xyz;
+#endif
+  // By the texel's middle, not by the pixel's: what does not move is not resampled and stays sharp.
+  const vec2 way_px = pixel_before(sought.position_ws) - (vec2(pixel) + 0.5);
+  const vec2 before = vec2(texel) + way_px / pixels_per_texel;
+  const History history = history_at(before, sought);
   const float share = 1.0 / max(history.weight, 1e-6);
   float frames = min(history.weight > 0.0 ? history.frames * share : 0.0, kept_frames);
-  frames = frames_left_by_change(texel, frames);
+  frames = frames_left_by_change(ivec2(floor(before + 0.5)), frames);
   const float fresh = 1.0 / (frames + 1.0);
   out_map = vec4(mix(history.light * share, now, fresh), frames + 1.0);
   out_moments.xy = mix(history.moments.xy * share, vec2(now_luminance, now_luminance * now_luminance), fresh);

@@ -67,7 +67,9 @@ ReconstructedMap ReconstructionPass::run(const GBuffer& g_buffer, const DeviceSc
   before_.map.bind(UNIT_IMAGE_A);
   before_.moments.bind(UNIT_IMAGE_B);
   before_.guide.bind(UNIT_IMAGE_C);
-  Light& light = light_.with(scene.brdf_defines());
+  gl::Defines defines = scene.brdf_defines();
+  if (g_buffer.has_motion) defines.emplace_back("MOTION 1");
+  Light& light = light_.with(defines);
   light.grid.set(grid);
   light.sample_count = grid.samples();
   light.path_stride = samples.path_stride;

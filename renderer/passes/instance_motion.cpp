@@ -1,0 +1,67 @@
+#include "renderer/passes/instance_motion.h"
+
+#include <algorithm>
+
+#include "renderer/passes/bindings.glsl"
+#include "renderer/passes/device_types.h"
+
+namespace lightwell {
+
+bool InstanceMotion::Placed::same_as(const Instance& instance) const {
+  return node == instance.node && primitive_index == instance.primitive_index && primitive == instance.primitive;
+}
+
+// Most scenes keep the order of their instances from frame to frame.
+const InstanceMotion::Placed* InstanceMotion::before(const Instance& instance, std::size_t index) const {
+  if (index < before_.size() && before_[index].same_as(instance)) return &before_[index];
+  const auto found =
+      std::find_if(before_.begin(), before_.end(), [&](const Placed& placed) { return placed.same_as(instance); });
+  return found != before_.end() ? &*found : nullptr;
+}
+
+void InstanceMotion::follow(const Pose& pose) {
+  upload(pose);
+  before_.clear();
+  for (const Instance& instance : pose.instances)
+    before_.push_back(
+        {instance.node, instance.primitive_index, instance.primitive, instance.world_from_object, instance.deformed});
+}
+
+void InstanceMotion::upload(const Pose& pose) {
+  moving_ = deforming_ = false;
+  std::vector<DeviceInstanceBefore> packed;
+  packed.reserve(pose.instances.size());
+  std::vector<const DeformedVertices*> deformed;
+  std::uint32_t positions = 0;
+  for (std::size_t i = 0; i < pose.instances.size(); ++i) {
+    const Instance& instance = pose.instances[i];
+    const Placed* placed = before(instance, i);
+    packed.push_back(pack_instance_before(placed ? placed->world_from_object : instance.world_from_object));
+    if (!placed) continue;
+    const bool deforms = instance.deformed && placed->deformed &&
+                         placed->deformed->positions.size() == instance.deformed->positions.size();
+    moving_ = moving_ || deforms || placed->world_from_object != instance.world_from_object;
+    if (!deforms) continue;
+    deforming_ = true;
+    packed.back().first_position = positions;
+    positions += static_cast<std::uint32_t>(placed->deformed->positions.size());
+    deformed.push_back(placed->deformed.get());
+  }
+  if (!moving_) return;
+  instances_.reserve(packed.size() * sizeof(DeviceInstanceBefore));
+  instances_.upload(std::span<const DeviceInstanceBefore>(packed));
+  if (!deforming_) return;
+  positions_.reserve(positions * sizeof(glm::vec3));
+  std::uint64_t offset_bytes = 0;
+  for (const DeformedVertices* vertices : deformed) {
+    positions_.upload(std::span<const glm::vec3>(vertices->positions), offset_bytes);
+    offset_bytes += vertices->positions.size() * sizeof(glm::vec3);
+  }
+  position_texels_.attach(positions_);
+}
+
+void InstanceMotion::bind() const {
+  if (deforming_) position_texels_.bind(UNIT_POSITIONS_BEFORE);
+}
+
+}  // namespace lightwell
