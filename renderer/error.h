@@ -15,6 +15,7 @@ enum class ErrorKind {
   kUnsupported,   // a required feature that is not implemented
   kNoDevice,      // no usable OpenGL device: exit code 4
   kDeviceLost,    // the context failed; the renderer must be rebuilt
+  kUnwanted,      // given up, for nobody wanted it any more: no failure
   kInternal,      // anything else: exit code 1
 };
 

@@ -193,7 +193,9 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
   Frame frame;
   frame.size_px = request.size_px;
   try {
-    state_->timer.begin_frame();
+    // What `realtime` remembers from frame to frame would be torn by half a frame.
+    const bool may_be_given_up = method_of(request.settings) != Method::kRealtime;
+    state_->timer.begin_frame(may_be_given_up ? request.is_unwanted : std::function<bool()>());
     const Pose pose = pose_at(scene, request.time_s);
     state_->device_scene.prepare(scene, pose, request.settings.multiple_scattering);
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
@@ -218,16 +220,11 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
                          *state_->tracer,
                          state_->triangle_groups,
                          trace_scene,
-                         state_->timer,
-                         request.is_unwanted};
+                         state_->timer};
     const Picture& picture = method == Method::kReference ? view.reference().render(context, scene)
                              : method == Method::kRealtime
                                  ? view.realtime().render(context, scene, request.camera, jitter_px)
                                  : view.thesis().render(context);
-    if (context.abandoned) {
-      view.accumulated = 0;
-      return Error{ErrorKind::kInternal, "frame", "it was wanted no more"};
-    }
     view.display.resize(request.size_px);
     view.display.measure_exposure(picture, view.exposure_share(request.time_s));
     if (request.want_display) view.display.run(picture, request.settings);
@@ -240,6 +237,9 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     frame.exposure_ev = request.settings.exposure_ev.value_or(view.display.measured_exposure_ev());
     frame.rays = context.rays;
     frame.triangles = state_->device_scene.triangles();
+  } catch (const gl::FrameUnwanted&) {
+    view.accumulated = 0;
+    return Error{ErrorKind::kUnwanted, "frame", "it was wanted no more"};
   } catch (const std::exception& error) {
     return Error{ErrorKind::kTooLarge, "scene", error.what()};
   }

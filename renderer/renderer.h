@@ -109,8 +109,8 @@ struct FrameRequest {
   glm::ivec2 size_px{512, 512};
   Settings settings;
   bool accumulate = false;  // add to the view's earlier frames of the very same request (scene unchanged): refinement
-  /// Asked now and then while paths are traced; true: the picture is wanted no more, and `render` gives an error. May
-  /// be empty.
+  /// Asked at the end of every stage, but for `realtime`, whose frames are always finished; true: the picture is wanted
+  /// no more, and `render` gives kUnwanted. May be empty.
   std::function<bool()> is_unwanted;
   bool want_linear = false;  // Frame::linear_rgb is filled as well: scene-referred, no exposure, no tone curve
   bool want_display = true;  // Frame::display_rgbx is filled: exposed, tone-mapped, sRGB

@@ -157,6 +157,7 @@ Problem problem_of(const Error& error, std::string pointer) {
     case ErrorKind::kNoDevice:
     case ErrorKind::kDeviceLost:
       return protocol::make_problem(503, "the graphics device is not available");
+    case ErrorKind::kUnwanted:
     case ErrorKind::kInternal:
       break;
   }

@@ -1,6 +1,7 @@
 #include "renderer/gl/stage_timer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "renderer/gl/buffer.h"
 
@@ -30,7 +31,8 @@ GLuint StageTimer::next_query() {
   return queries_[used_queries_++];
 }
 
-void StageTimer::begin_frame() {
+void StageTimer::begin_frame(std::function<bool()> is_unwanted) {
+  is_unwanted_ = std::move(is_unwanted);
   stages_.clear();
   used_queries_ = 0;
   last_ = std::chrono::steady_clock::now();
@@ -38,6 +40,11 @@ void StageTimer::begin_frame() {
 }
 
 void StageTimer::mark(std::string_view name) {
+  note_end(name);
+  if (is_unwanted_ && is_unwanted_()) throw FrameUnwanted();
+}
+
+void StageTimer::note_end(std::string_view name) {
   if (!software_) {
     glQueryCounter(next_query(), GL_TIMESTAMP);
     stages_.push_back({name, 0.0});

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string_view>
 #include <vector>
 
 #include "renderer/gl/gl.h"
 
 namespace lightwell::gl {
+
+/// Thrown at the end of a stage: the frame is wanted no more.
+struct FrameUnwanted {};
 
 class StageTimer {
  public:
@@ -23,15 +27,19 @@ class StageTimer {
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
-  void begin_frame();
-  /// Everything issued since the last mark (or begin_frame) was the stage `name`. Equal names add up.
+  /// `is_unwanted` is asked at the end of every stage; may be empty.
+  void begin_frame(std::function<bool()> is_unwanted);
+  /// Everything issued since the last mark (or begin_frame) was the stage `name`. Equal names add up. Throws
+  /// FrameUnwanted.
   void mark(std::string_view name);
   /// The stages since begin_frame; waits for the device.
   std::vector<Stage> end_frame();
 
  private:
   GLuint next_query();
+  void note_end(std::string_view name);
   bool software_;
+  std::function<bool()> is_unwanted_;
   std::chrono::steady_clock::time_point last_;
   std::vector<Stage> stages_;
   std::vector<GLuint> queries_;

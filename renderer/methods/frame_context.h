@@ -20,9 +20,7 @@ struct FrameContext {
   TriangleGroups& triangle_groups;  // to be updated by whom needs them
   const TraceScene& trace_scene;    // what the tracer was updated with
   gl::StageTimer& timer;
-  const std::function<bool()>& is_unwanted;  // may be empty
-  std::uint64_t rays = 0;                    // traced in this frame, without those that candidates missed
-  bool abandoned = false;                    // the picture is not complete: it was wanted no more
+  std::uint64_t rays = 0;  // traced in this frame, without those that candidates missed
 };
 
 }  // namespace lightwell

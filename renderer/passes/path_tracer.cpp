@@ -160,8 +160,6 @@ const Picture& PathTracerPass::run(FrameContext& frame, const LightTable& lights
   const auto width = static_cast<std::uint32_t>(frame.size_px.x);
   const int rows_per_wave = std::max(1, static_cast<int>(most_paths_ / width));
   for (int row = 0; row < frame.size_px.y; row += rows_per_wave) {
-    frame.abandoned = frame.is_unwanted && frame.is_unwanted();
-    if (frame.abandoned) return picture_;
     const int rows = std::min(rows_per_wave, frame.size_px.y - row);
     trace_wave(frame, lights,
                {row, rows, static_cast<std::uint32_t>(row) * width, static_cast<std::uint32_t>(rows) * width});

@@ -119,7 +119,8 @@ void SceneTextures::collect(const Scene& scene) {
     if (source.image < 0 || images_[static_cast<std::size_t>(source.image)]->rgba.empty()) continue;
     if (find_layer(source.image, srgb != 0, source.sampler.mag_nearest) >= 0) continue;
     const int size_class = class_for(images_[static_cast<std::size_t>(source.image)]->size_px);
-    const auto same_array = [&](const Layer& l) { return l.size_class == size_class && l.srgb == (srgb != 0); };
+    const bool is_srgb = srgb != 0;
+    const auto same_array = [&](const Layer& l) { return l.size_class == size_class && l.srgb == is_srgb; };
     const auto index = static_cast<int>(std::count_if(layers_.begin(), layers_.end(), same_array));
     layers_.push_back({source.image, srgb != 0, source.sampler.mag_nearest, size_class, index});
   }

@@ -14,6 +14,7 @@ ExitCode exit_code_of(ErrorKind kind) {
     case ErrorKind::kNoDevice:
       return kNoUsableDevice;
     case ErrorKind::kDeviceLost:
+    case ErrorKind::kUnwanted:
     case ErrorKind::kInternal:
       break;
   }

@@ -45,6 +45,7 @@ const char* label_of(ErrorKind kind) {
       return "no_device";
     case ErrorKind::kDeviceLost:
       return "device_lost";
+    case ErrorKind::kUnwanted:  // counted by themselves
     case ErrorKind::kInternal:
       break;
   }
@@ -75,6 +76,7 @@ struct Metrics::State {
   prometheus::Registry registry;
   Family<Counter>& frames = counters("lightwell_frames_total", "Frames rendered, by what they were for");
   Family<Counter>& failures = counters("lightwell_frame_failures_total", "Frames that failed, by the kind of error");
+  Counter& unwanted = counters("lightwell_frames_given_up_total", "Frames given up for an input that came").Add({});
   Family<Histogram>& frame_time = histograms("lightwell_frame_seconds", "Time of a whole frame on the render thread");
   Family<Histogram>& stage_time = histograms("lightwell_stage_seconds", "Time of a frame's stages on the device");
   Counter& rays = counters("lightwell_rays_total", "Rays traced").Add({});
@@ -119,6 +121,7 @@ void Metrics::frame_rendered(const Frame& frame, Purpose purpose, double seconds
 }
 
 void Metrics::frame_failed(ErrorKind kind) {
+  if (kind == ErrorKind::kUnwanted) return state_->unwanted.Increment();
   state_->failures.Add({{"kind", label_of(kind)}}).Increment();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "server/convert.h"
 #include "server/render/jpeg.h"
@@ -14,6 +15,7 @@ using std::chrono::steady_clock;
 // Of the method reference in a picture shown in place of another method's: with fewer it would be noisier.
 constexpr std::uint32_t kFewestReferenceFrames = 32;
 constexpr auto kDevicePause = std::chrono::milliseconds(500);  // after the device was lost
+constexpr std::chrono::duration<double> kNearlyDone(0.008);    // a picture with no more to do is finished all the same
 constexpr int kSmallPicture = 256 * 256;                       // pixels: halved chroma saves little and shows
 
 }  // namespace
@@ -26,7 +28,7 @@ SteadyTime Director::due_at(SteadyTime now) {
   if (state->revision == failed_revision_) return kNever;  // it would fail again
   if (now < retry_at_) return retry_at_;
   if (!session_->audience().wants_picture(in_the_making_)) return kNever;
-  const SteadyTime next_frame = take_.start + std::max(options_.least_frame_time, take_.grade.interval);
+  const SteadyTime next_frame = started_ + std::max(options_.least_frame_time, take_.grade.interval);
   if (!take_.state || state->revision != take_.state->revision)
     return take_.kind == Kind::kFresh ? next_frame : now;  // refining gives way at once
   if (state->moving()) return next_frame;
@@ -50,6 +52,7 @@ Result<Shot> Director::take_shot(SteadyTime now) {
   take_.kind = same && accumulated_ > 0 ? Kind::kRefining : Kind::kFresh;
   take_.state = std::move(state);
   take_.start = now;
+  last_started_ = std::exchange(started_, now);
   ++in_the_making_;
   if (take_.kind == Kind::kFresh) return take_fresh_shot();
   if (accumulated_ >= frames_wanted()) {  // the method's own final picture has stood long enough
@@ -74,7 +77,17 @@ Result<Shot> Director::take_fresh_shot() {
   take_.request = request;
   take_.shown = true;
   take_.is_final = false;
+  if (state.revision == finished_revision_) request.is_unwanted = gives_way_to_inputs();
   return Shot{state.stage->scene(), std::move(request)};
+}
+
+/// For a picture in which only time has gone on: an input that comes meanwhile is shown sooner without it. The picture
+/// that shows the input is finished whatever comes, so that never two in a row are given up.
+std::function<bool()> Director::gives_way_to_inputs() const {
+  const auto nearly_done = take_.start + std::chrono::duration_cast<SteadyTime::duration>(usual_time_ - kNearlyDone);
+  return [session = session_, revision = take_.state->revision, nearly_done] {
+    return session->state()->revision != revision && steady_clock::now() < nearly_done;
+  };
 }
 
 PictureGrade Director::choose_grade() {
@@ -108,7 +121,11 @@ void Director::shot_done(Result<Frame> frame) {
   if (!frame) {
     --in_the_making_;
     accumulated_ = 0;
-    if (session_->state()->revision != take_.state->revision) return;  // given up, for it is out of date
+    if (frame.error().kind == ErrorKind::kUnwanted) {
+      started_ = last_started_;  // the next need not wait for its turn
+      return;
+    }
+    if (session_->state()->revision != take_.state->revision) return;  // what failed is out of date
     const bool lost = frame.error().kind == ErrorKind::kDeviceLost;    // not the picture's fault
     if (lost)
       retry_at_ = steady_clock::now() + kDevicePause;
@@ -116,6 +133,8 @@ void Director::shot_done(Result<Frame> frame) {
       failed_revision_ = take_.state->revision;
     return session_->audience().report(problem_of(frame.error()));
   }
+  finished_revision_ = take_.state->revision;
+  if (take_.kind == Kind::kFresh) usual_time_ = steady_clock::now() - take_.start;
   accumulated_ = take_.kind == Kind::kFresh ? 1 : frame->accumulated;
   if (take_.shown) return encode(std::move(frame).value());
   --in_the_making_;

@@ -62,6 +62,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   bool goes_over_into_reference() const;
   std::uint32_t frames_wanted() const;
   Result<Shot> take_fresh_shot();
+  std::function<bool()> gives_way_to_inputs() const;
   Shot take_refining_shot();
   PictureGrade choose_grade();
   void encode(Frame frame);
@@ -72,6 +73,9 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   const DirectorOptions options_;
 
   Take take_;
+  SteadyTime started_{}, last_started_{};       // the last picture that was not given up, and the one before it
+  std::uint64_t finished_revision_ = 0;         // of the last picture that was finished
+  std::chrono::duration<double> usual_time_{};  // of a fresh picture on the render thread, as the last one took
   std::mutex grader_mutex_;
   PictureGrader grader_;
   SteadyTime still_since_{};       // the last picture that showed a change

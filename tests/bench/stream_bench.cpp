@@ -56,6 +56,7 @@ void measure_latency(int port, bool playing, int moves, Report& report) {
                   {{"ms", median(latency_ms)},
                    {"ms p99", share_below(latency_ms, 0.99)},
                    {"over render ms", median(over_render_ms)},
+                   {"over render ms p99", share_below(over_render_ms, 0.99)},
                    {"added ms", median(added_ms)},
                    {"slowest: ms", slowest.first},
                    {"its render ms", static_cast<double>(slowest.second.header.render_ms)},

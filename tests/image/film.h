@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/image/test_scenes.h"
+#include "tests/image/reference_scenes.h"
 
 namespace lightwell::testing {
 
@@ -13,13 +13,6 @@ inline Settings realtime_settings(int bounces) {
   settings.bounces = bounces;
   settings.samples = 64;  // four a frame
   settings.indirect_size = 32;
-  return settings;
-}
-
-inline Settings reference_settings(int bounces) {
-  Settings settings;
-  settings.method = Method::kReference;
-  settings.bounces = bounces;
   return settings;
 }
 
@@ -42,6 +35,13 @@ class Film {
     for (const std::string& message : shared_renderer().context().take_debug_messages())
       ADD_FAILURE() << "GL: " << message;
     return {request_.size_px, frame ? std::move(frame->linear_rgb) : std::vector<float>(3)};
+  }
+
+  /// Renders a frame; whether it was given up.
+  bool is_given_up(const Scene& scene) {
+    const Result<Frame> frame = shared_renderer().render(scene, request_, *view_);
+    EXPECT_TRUE(frame.ok() || frame.error().kind == ErrorKind::kUnwanted);
+    return !frame.ok();
   }
 
   /// The mean of `counted` frames after `first` others.

@@ -1,6 +1,7 @@
 // Pictures without a graphics device: a source that paints one colour, as slowly as a test wants, and keeps account.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -20,11 +21,13 @@ struct FakeStudio {
   std::atomic<bool> held = false;  // a picture that has been begun is finished only when this is over
   std::atomic<bool> failing = false;
   std::atomic<bool> throwing = false;
-  std::atomic<bool> losing = false;  // the device: once
-  std::atomic<int> sources = 0;      // made
-  std::atomic<int> views = 0;        // alive
-  std::atomic<int> begun = 0;        // pictures
-  std::atomic<int> pictures = 0;     // and finished
+  std::atomic<bool> losing = false;        // the device: once
+  std::atomic<int> sources = 0;            // made
+  std::atomic<int> views = 0;              // alive
+  std::atomic<int> begun = 0;              // pictures
+  std::atomic<int> pictures = 0;           // and finished
+  std::atomic<int> given_up = 0;           // or not: an input came
+  std::atomic<int> given_up_in_a_row = 0;  // at most
 
   std::vector<FrameRequest> requests() const {
     std::lock_guard lock(mutex);
@@ -56,8 +59,12 @@ class FakeSource : public PictureSource {
   Result<Frame> render(const Scene&, const FrameRequest& request, RenderView& render_view) override {
     auto& view = static_cast<View&>(render_view);
     ++studio_->begun;
-    while (studio_->held) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(studio_->render_ms));
+    if (is_given_up(request)) {
+      ++studio_->given_up;
+      studio_->given_up_in_a_row = std::max(studio_->given_up_in_a_row.load(), ++in_a_row_);
+      return Error{ErrorKind::kUnwanted, "", "given up"};
+    }
+    in_a_row_ = 0;
     if (studio_->losing.exchange(false)) return Error{ErrorKind::kDeviceLost, "", "the fake device is lost"};
     if (studio_->throwing) throw std::runtime_error("the fake source was told to throw");
     if (studio_->failing) return Error{ErrorKind::kUnsupported, "scene", "the fake source was told to fail"};
@@ -78,6 +85,16 @@ class FakeSource : public PictureSource {
     std::uint32_t accumulated = 0;
   };
 
+  /// Takes its time, unless nobody wants the picture any more.
+  bool is_given_up(const FrameRequest& request) const {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(studio_->render_ms);
+    while (studio_->held || std::chrono::steady_clock::now() < end) {
+      if (request.is_unwanted && request.is_unwanted()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+
   Frame paint(const FrameRequest& request, std::uint32_t accumulated) const {
     Frame frame;
     frame.size_px = request.size_px;
@@ -92,6 +109,7 @@ class FakeSource : public PictureSource {
   }
 
   std::shared_ptr<FakeStudio> studio_;
+  int in_a_row_ = 0;
 };
 
 inline MakePictureSource fake_source(std::shared_ptr<FakeStudio> studio) {

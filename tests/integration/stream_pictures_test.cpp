@@ -62,6 +62,36 @@ TEST_F(StreamPicturesTest, TheNewestInputWins) {
   EXPECT_LE(of_inputs, 3);  // the one that was held, the newest, and whatever was the newest in between
 }
 
+TEST_F(StreamPicturesTest, APictureInWhichOnlyTimeGoesOnGivesWayToAnInput) {
+  studio_->render_ms = 200;
+  StreamClient client(server_.port(), make_session({{"scene", "helicopters"}}));
+  client.hello();
+  ASSERT_TRUE(client.frame_where([](const FrameHeader&) { return true; }));
+  // An input that comes late in a picture, as on a slow machine any may, lets it be finished: one of many does not.
+  std::uint32_t seq = 0;
+  while (studio_->given_up == 0 && seq < 100) {
+    client.input(++seq, {{"camera", free_camera(seq)}});
+    ASSERT_TRUE(client.frame_where([&](const FrameHeader& frame) { return frame.input_seq == seq; }));
+    client.frame_where([](const FrameHeader&) { return true; });  // one in which only time has gone on
+  }
+  EXPECT_GT(studio_->given_up, 0);
+  EXPECT_EQ(metric("lightwell_frames_given_up_total"), studio_->given_up);
+}
+
+TEST_F(StreamPicturesTest, NeverTwoPicturesInARowAreGivenUp) {
+  studio_->render_ms = 100;
+  StreamClient client(server_.port(), make_session({{"scene", "helicopters"}}));
+  client.hello();
+  std::uint32_t seq = 0;
+  for (int frames = 0; frames < 10; ++frames) {
+    for (int i = 0; i < 10; ++i) client.input(++seq, {{"camera", free_camera(seq)}});
+    const auto frame = client.next_frame();
+    ASSERT_TRUE(frame);
+    client.ack(frame->frame);
+  }
+  EXPECT_LE(studio_->given_up_in_a_row, 1);
+}
+
 TEST_F(StreamPicturesTest, RefinesWhatStandsStillAndThenRests) {
   StreamClient client(server_.port(), make_session());
   client.hello();
