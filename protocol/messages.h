@@ -205,6 +205,16 @@ struct Input {
   bool operator==(const Input&) const = default;
 };
 
+/// A viewer's own look at the session: what is absent is the driver's. All absent: the driver's pictures again.
+struct Look {
+  std::uint32_t seq = 0;  // ascending, from 1
+  std::optional<CameraSpec> camera;
+  std::optional<std::uint16_t> width, height;
+
+  bool shares_pictures() const { return !camera && !width && !height; }
+  bool operator==(const Look&) const = default;
+};
+
 struct Ack {
   std::uint32_t frame = 0;                                  // the frame's id
   std::optional<double> received_ms, decoded_ms, shown_ms;  // the client's clock
@@ -219,7 +229,7 @@ struct Ping {
   bool operator==(const Ping&) const = default;
 };
 
-using ClientMessage = std::variant<Hello, Input, Ack, Ping>;
+using ClientMessage = std::variant<Hello, Input, Look, Ack, Ping>;
 
 // From the server.
 

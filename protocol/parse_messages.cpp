@@ -25,6 +25,13 @@ void read_message(ObjectReader& object, Input& out) {
   read_change(object, out.change);
 }
 
+void read_message(ObjectReader& object, Look& out) {
+  object.required("seq", out.seq, read_sequence);
+  object.optional("camera", out.camera, read_camera);
+  object.optional("width", out.width, read_pixels);
+  object.optional("height", out.height, read_pixels);
+}
+
 void read_message(ObjectReader& object, Ack& out) {
   object.required("frame", out.frame, read_sequence);
   object.optional("received_ms", out.received_ms, read_any_number);
@@ -182,7 +189,8 @@ constexpr MessageKind<Variant> kind(std::string_view type) {
 }
 
 constexpr std::array kClientKinds{kind<Hello, ClientMessage>("hello"), kind<Input, ClientMessage>("input"),
-                                  kind<Ack, ClientMessage>("ack"), kind<Ping, ClientMessage>("ping")};
+                                  kind<Look, ClientMessage>("look"), kind<Ack, ClientMessage>("ack"),
+                                  kind<Ping, ClientMessage>("ping")};
 constexpr std::array kServerKinds{kind<Welcome, ServerMessage>("welcome"),
                                   kind<StateUpdate, ServerMessage>("state"),
                                   kind<PoseUpdate, ServerMessage>("pose"),

@@ -80,6 +80,14 @@ struct MessageWriter {
     return object;
   }
 
+  Json operator()(const Look& look) const {
+    Json object{{"type", "look"}, {"seq", look.seq}};
+    if (look.camera) object["camera"] = to_json(*look.camera);
+    give(object, "width", look.width);
+    give(object, "height", look.height);
+    return object;
+  }
+
   Json operator()(const Ack& ack) const {
     Json object{{"type", "ack"}, {"frame", ack.frame}, {"queue", ack.queue}};
     give(object, "received_ms", ack.received_ms, number);

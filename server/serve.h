@@ -25,6 +25,7 @@ struct ServeLimits {
   int max_sessions = 64;
   int max_connections = 4096;
   int max_viewers_per_session = 128;
+  int max_own_looks = 4;  // viewers of a session with a camera or size of their own; its share of the time pays for it
   int max_sequence_frames = 10'000;                // of one sequence
   std::uint64_t max_sequence_bytes = 64ull << 30;  // files of all sequences; beyond, no new one is begun
   double sequence_keep_s = 7.0 * 86'400.0;         // one that has ended is forgotten after this

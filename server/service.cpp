@@ -1,5 +1,6 @@
 #include "server/service.h"
 
+#include <cmath>
 #include <tuple>
 
 #include "server/operations/log.h"
@@ -35,6 +36,9 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                    [this] {
                      return render_loop.is_ready() ? render_loop.ready().get().methods
                                                    : std::vector<std::string>{"thesis"};
+                   },
+                   [this](std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account) {
+                     direct(std::move(session), std::move(account));
                    }},
       render_loop(
           std::move(make_source), [this] { return warm_up_shot(); },
@@ -85,6 +89,13 @@ Shot Service::State::warm_up_shot() {
   shot.request.size_px = kWarmUpSize;
   if (auto camera = stage->place(protocol::DefaultCamera(), 0.0, 1.0f)) shot.request.camera = std::move(camera).value();
   return shot;
+}
+
+void Service::State::direct(std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account) {
+  DirectorOptions director;
+  director.quality = options.quality;
+  director.still_before_reference = std::chrono::milliseconds(std::llround(options.reference_after_s * 1000.0));
+  render_loop.add(std::make_shared<Director>(std::move(session), *encoders, director), Share::kOwn, std::move(account));
 }
 
 void Service::State::keep_house() {

@@ -16,6 +16,7 @@ struct Service::State {
 
   void load_scenes();
   Shot warm_up_shot();
+  void direct(std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account);
   void keep_house();
   Levels levels();
   void count(const net::RequestHead* head, int status, double seconds);

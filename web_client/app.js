@@ -12,13 +12,14 @@ import { OrbitCamera } from "./orbit_camera.js";
 import { Panel } from "./panel.js";
 import { wanted_size } from "./picture_size.js";
 import { problem_from, words_of } from "./problem.js";
-import { ack, input, ProtocolError } from "./protocol.js";
+import { ack, ProtocolError } from "./protocol.js";
 import { SessionModel } from "./session_model.js";
 import { hash_of, parse_hash } from "./share.js";
 import { listen_for_shortcuts } from "./shortcuts.js";
 import { Stats } from "./stats.js";
 import { Transport } from "./transport.js";
 import { Uploader } from "./upload.js";
+import { Watching, watch_link } from "./watching.js";
 import { connect_chrome } from "./chrome.js";
 
 const kResizeWaitMs = 120;
@@ -37,6 +38,12 @@ let held_acks = [];
 let pictures_shown = 0;  // over all streams
 
 const inputs = new Inputs(send_input);
+const watching = new Watching(wished.watch, {
+  size: current_size,
+  push: (change) => inputs.push(change),
+  copy_link,
+  returned: show_what_is,
+});
 const model = new SessionModel((seq, member) => inputs.is_newer_than(seq, member));
 const orbit = new OrbitCamera();
 const frames = new FrameView(document.getElementById("picture"), frame_done);
@@ -44,7 +51,7 @@ const banner = new Banner(() => connection.connect());
 
 function send_input(seq, change) {
   try {
-    const sent = connection.send(input(seq, change));
+    const sent = connection.send(watching.message(seq, change));
     if (sent) stage.dataset.asked = seq;
     return sent;
   } catch (error) {  // a value the protocol does not know; kept, it would stop every later input
@@ -56,6 +63,7 @@ function send_input(seq, change) {
 
 /** The user's wish: shown at once, sent with the next animation frame. */
 function push(input, at_ms) {
+  if (!watching.allows(input)) return show_note("Only the driver changes that.");
   model.ask(input);
   inputs.push(input, at_ms);
 }
@@ -99,11 +107,14 @@ const connection = new Connection(base, access, {
     const { scene, settings, time_s } = model;
     return { ...request, scene, camera: model.camera, settings, time_s };
   },
-  hello: () => ({ codecs: ["jpeg"], ...current_size(), device_pixel_ratio: devicePixelRatio, role: "driver" }),
+  hello: () => ({ codecs: ["jpeg"], ...current_size(), device_pixel_ratio: devicePixelRatio, role: watching.role }),
   on_state: connection_state,
   on_welcome: welcomed,
   on_message: (message) => {
-    if (message.type === "state") model.apply(message);
+    if (message.type === "state") {
+      if (message.scene) watching.lost();
+      model.apply(message);
+    }
     if (message.type === "pose") model.keep_pose(message);
     if (message.type === "stats") {
       stats.server_says(message);
@@ -117,13 +128,14 @@ const connection = new Connection(base, access, {
       ask_for_token(access, access.token ? "That token is not known here." : "", () => connection.connect());
       return false;
     }
+    if (watching.session) return false;
     const can_do_without = model.scene === null && Object.keys(wished).length > 0;
     if (can_do_without) show_note(`The address asks for something that is not here. ${problem.message}`, "trouble");
     delete wished.scene;
     delete wished.camera;
     return can_do_without;
   },
-});
+}, watching.session);
 
 function connection_state(state, { wait_ms, reason }) {
   stage.dataset.connection = state;
@@ -162,6 +174,11 @@ function welcomed(message, is_new_session) {
 /** The server refused an input: says so, and shows again what really is. */
 async function refused(message) {
   show_note(words_of(message.problem, message.problem?.status), "trouble");
+  watching.lost();
+  await show_what_is();
+}
+
+async function show_what_is() {
   const address = new URL(`v1/sessions/${connection.session}`, base);
   const response = await fetch(address, { cache: "no-store", headers: access.headers() }).catch(() => null);
   if (response?.ok) model.apply({ ...(await response.json()), type: "session" });
@@ -208,6 +225,11 @@ function open_scene(name) {
   push({ scene: name, camera: null, time_s: 0, playing: true });
 }
 
+async function copy_link() {
+  await navigator.clipboard.writeText(watch_link(base, connection.session));
+  show_note("Copied: whoever opens the link watches.");
+}
+
 async function screenshot() {
   const blob = await frames.png();
   if (!blob) return;
@@ -248,7 +270,7 @@ new ResizeObserver(resized).observe(stage);
 
 let hash_timer = 0;
 model.subscribe((changed) => {
-  if (!changed.has("camera") && !changed.has("scene")) return;
+  if (watching.session || (!changed.has("camera") && !changed.has("scene"))) return;
   clearTimeout(hash_timer);
   hash_timer = setTimeout(() => history.replaceState(null, "", `#${hash_of(model.scene, model.camera)}`), kHashWaitMs);
 });
@@ -260,6 +282,7 @@ addEventListener("hashchange", () => {
     connection.connect();
   }
   const asked = parse_hash(location.hash);
+  if (asked.watch !== watching.session) return location.reload();
   if (asked.scene && asked.scene !== model.scene) open_scene(asked.scene);
   if (asked.camera) push({ camera: asked.camera });
 });

@@ -17,6 +17,7 @@ export function connect_chrome(model, stats, owner) {
   const panel = document.getElementById("panel");
   const panel_button = document.getElementById("panel-button");
   const radios = [...document.querySelectorAll("#view-switch input")];
+  const watches = document.body.classList.contains("watching");  // and changes nothing: no settings
   let connection = "connecting";
 
   function set_panel(open) {
@@ -26,6 +27,7 @@ export function connect_chrome(model, stats, owner) {
   }
 
   function toggle_panel() {
+    if (watches) return;
     const open = document.body.classList.contains("panel-closed");
     localStorage.setItem(kPanelKey, open ? "open" : "closed");
     set_panel(open);
@@ -60,6 +62,6 @@ export function connect_chrome(model, stats, owner) {
 
   const stored = localStorage.getItem(kPanelKey);
   const is_phone = matchMedia(kPhone).matches;
-  set_panel(!is_phone && stored !== "closed");
+  set_panel(!is_phone && stored !== "closed" && !watches);
   return { show_connection, show_status, toggle_panel, open_help };
 }

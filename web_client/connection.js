@@ -27,12 +27,13 @@ const kOwnSleepMs = 2 * kPingEveryMs;  // a pulse as late as this: it was the pa
 export class Connection {
   /**
    * @param {URL} base the folder the viewer is served from @param {import("./access.js").Access} access
-   * @param {ConnectionOwner} owner
+   * @param {ConnectionOwner} owner @param {string=} watched the session to watch: no other is made in its place
    */
-  constructor(base, access, owner) {
+  constructor(base, access, owner, watched = undefined) {
     this.base = base;
     this.access = access;
     this.owner = owner;
+    this.watched = watched;
     this.session = null;
     this.resume = null;
     this.socket = null;
@@ -81,18 +82,19 @@ export class Connection {
 
   /** Gives the session back, from a page that is being closed. */
   end_session() {
-    if (!this.session) return;
+    if (!this.session || this.watched) return;
     const request = { method: "DELETE", keepalive: true, headers: this.access.headers() };
     fetch(new URL(`v1/sessions/${this.session}`, this.base), request).catch(() => {});
   }
 
   /** True if a new session was made, false if the old one is still there. */
   async ensure_session() {
+    this.session ??= this.watched ?? null;
     if (this.session) {
       const request = { cache: "no-store", headers: this.access.headers() };
       const response = await fetch(new URL(`v1/sessions/${this.session}`, this.base), request);
       if (response.ok) return false;
-      if (response.status !== 404 && response.status !== 410) throw await problem_from(response);
+      if (this.watched || (response.status !== 404 && response.status !== 410)) throw await problem_from(response);
       this.session = null;
       this.resume = null;
     }

@@ -233,6 +233,7 @@ const client_messages = {
   hello: object({ type: any, codecs: array(string(1, 32), 1, 16), width: pixels, height: pixels },
     { device_pixel_ratio: number(0, 16, true), role, resume: nullable(token) }),
   input: object({ type: any, seq: sequence }, change),
+  look: object({ type: any, seq: sequence }, { camera, width: pixels, height: pixels }),
   ack: object({ type: any, frame: sequence },
     { received_ms: number(), decoded_ms: number(), shown_ms: number(), queue: u32, held_ms: number() }),
   ping: object({ type: any, t: number() }),
@@ -317,6 +318,11 @@ export function hello(options) {
 /** `change_wanted`: any of edits, camera, settings, playing, time_s, scene, width and height. */
 export function input(seq, change_wanted) {
   return client_text({ type: "input", seq, ...change_wanted });
+}
+
+/** A viewer's own look. `own`: any of camera, width and height; what is left out is the driver's. */
+export function look(seq, own = {}) {
+  return client_text({ type: "look", seq, ...own });
 }
 
 /** `timing`: what is known of received_ms, decoded_ms, shown_ms and queue. */

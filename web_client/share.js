@@ -13,11 +13,12 @@ export function hash_of(scene, camera) {
   return parts.join("&");
 }
 
-/** The inverse; what is missing or makes no sense is left out. @returns {{scene?: string, camera?: object}} */
+/** The inverse; what is missing or makes no sense is left out. @returns {{scene?: string, camera?: object, watch?: string}} */
 export function parse_hash(hash) {
   const query = new URLSearchParams(hash.replace(/^#/, ""));
   const result = {};
   if (/^[a-z0-9_-]{1,64}$/.test(query.get("scene") ?? "")) result.scene = query.get("scene");
+  if (/^[A-Za-z0-9_-]{1,64}$/.test(query.get("watch") ?? "")) result.watch = query.get("watch");
   const index = query.get("camera");
   if (/^\d{1,4}$/.test(index ?? "")) result.camera = { index: Number(index) };
   const point = (name) => (query.get(name) ?? "").split(",").map((text) => (text.trim() === "" ? NaN : Number(text)));

@@ -45,6 +45,8 @@ void add_limit_options(CLI::App& app, ServeLimits& limits) {
   add_integer(app, "--max-sessions", limits.max_sessions, 1, kAnyInt, "Sessions at a time");
   add_integer(app, "--max-connections", limits.max_connections, 1, kAnyInt, "Connections at a time");
   add_integer(app, "--max-viewers", limits.max_viewers_per_session, 1, kAnyInt, "Viewers of one session");
+  add_integer(app, "--max-own-looks", limits.max_own_looks, 0, kAnyInt,
+              "Viewers of a session with a camera or size of their own");
   add_parsed(app, "--session-idle", limits.session_idle_s, seconds, "SECONDS",
              "A session without viewers and requests ends after this", "600");
 }

@@ -33,10 +33,7 @@ Response create_session(const Services& services, std::string_view body) {
   if (!state) return http::problem_response(state.problem());
   const auto session = services.sessions.add(std::move(state).value(), services.surroundings, *idle_s);
   if (!session) return http::problem_response(session.problem());
-  DirectorOptions options;
-  options.quality = services.options.quality;
-  options.still_before_reference = std::chrono::milliseconds(std::llround(services.options.reference_after_s * 1000.0));
-  services.render_loop.add(std::make_shared<Director>(*session, services.encoders, options), Share::kOwn);
+  (*session)->begin();
   Response response = http::json_response(201, protocol::to_json((*session)->describe()));
   response.headers.emplace_back("Location", services.options.base_path + "/v1/sessions/" + (*session)->id());
   return response;

@@ -9,22 +9,31 @@
 #include "server/operations/log.h"
 
 namespace lightwell {
+
+/// Render time used up, in seconds. Who has used least goes first. One that comes back from idling starts level with
+/// the others: idling saves nothing up.
+struct RenderAccount {
+  double used_s = 0.0;
+  double level_s = 0.0;  // what the one of its subjects had used that was served last
+};
+
 namespace {
 
 using std::chrono::steady_clock;
 
-/// Render time used up, in seconds. Who has used least goes first. One that comes back from idling starts level with
-/// the others: idling saves nothing up.
-struct Account {
-  double used_s = 0.0;
-};
-
 struct Seat {
   std::shared_ptr<Subject> subject;
-  std::shared_ptr<Account> account;
+  std::shared_ptr<RenderAccount> account;
   Share share;
   std::unique_ptr<RenderView> view;
+  double used_s = 0.0;  // of the account's, by this subject
   bool was_due = false;
+
+  /// Jobs come one after another, the subjects of a session by turns.
+  bool goes_before(const Seat& other) const {
+    if (account != other.account) return account->used_s < other.account->used_s;
+    return share == Share::kOwn && used_s < other.used_s;
+  }
 };
 
 /// A source and those it renders for. Lives on the render thread.
@@ -35,9 +44,10 @@ class Studio {
 
   PictureSource& source() { return *source_; }
 
-  void seat(std::shared_ptr<Subject> subject, Share share) {
-    auto account = share == Share::kJobs ? jobs_ : std::make_shared<Account>(Account{level_s_});
-    seats_.push_back({std::move(subject), std::move(account), share, nullptr, false});
+  void seat(std::shared_ptr<Subject> subject, Share share, std::shared_ptr<RenderAccount> account) {
+    if (share == Share::kJobs) account = jobs_;
+    if (!account) account = RenderLoop::make_account();
+    seats_.push_back({std::move(subject), std::move(account), share, nullptr});
   }
 
   void let_go_of_ended() {
@@ -51,11 +61,14 @@ class Studio {
     for (Seat& seat : seats_) {
       const SteadyTime due = seat.subject->due_at(now);
       const bool is_due = due <= now;
-      if (is_due && !seat.was_due) seat.account->used_s = std::max(seat.account->used_s, level_s_);
+      if (is_due && !seat.was_due) {
+        seat.account->used_s = std::max(seat.account->used_s, level_s_);
+        seat.used_s = std::max(seat.used_s, seat.account->level_s);
+      }
       seat.was_due = is_due;
       if (!is_due)
         wake_at = std::min(wake_at, due);
-      else if (!chosen || seat.account->used_s < chosen->account->used_s)
+      else if (!chosen || seat.goes_before(*chosen))
         chosen = &seat;
     }
     return chosen;
@@ -64,12 +77,14 @@ class Studio {
   void render(Seat& seat) {
     const SteadyTime start = steady_clock::now();
     level_s_ = std::max(level_s_, seat.account->used_s);
+    seat.account->level_s = std::max(seat.account->level_s, seat.used_s);
     Result<Shot> shot = seat.subject->take_shot(start);
     Result<Frame> frame = shot ? render(*shot, seat.view) : Result<Frame>(shot.error());
     const double seconds = std::chrono::duration<double>(steady_clock::now() - start).count();
     if (shot) observer_(seat.share, frame, seconds);
     seat.subject->shot_done(std::move(frame));
     seat.account->used_s += seconds;
+    seat.used_s += seconds;
   }
 
   Result<Frame> render(const Shot& shot, std::unique_ptr<RenderView>& view) {
@@ -98,7 +113,7 @@ class Studio {
   const RenderLoop::Observer& observer_;
   std::unique_ptr<PictureSource> source_;  // null after the device was lost, until the next frame
   std::vector<Seat> seats_;                // their views go before the source
-  std::shared_ptr<Account> jobs_ = std::make_shared<Account>();
+  std::shared_ptr<RenderAccount> jobs_ = std::make_shared<RenderAccount>();
   double level_s_ = 0.0;  // the account of who was served last: the least of those that wait
 };
 
@@ -110,7 +125,12 @@ struct RenderLoop::State {
 
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<std::pair<std::shared_ptr<Subject>, Share>> arrivals;
+  struct Arrival {
+    std::shared_ptr<Subject> subject;
+    Share share;
+    std::shared_ptr<RenderAccount> account;
+  };
+  std::vector<Arrival> arrivals;
   bool woken = false;
   bool stopping = false;
   std::atomic<bool> warm = false;
@@ -143,7 +163,8 @@ void RenderLoop::State::serve(Studio& studio) {
       std::lock_guard lock(mutex);
       if (stopping) return;
       woken = false;
-      for (auto& [subject, share] : arrivals) studio.seat(std::move(subject), share);
+      for (Arrival& arrival : arrivals)
+        studio.seat(std::move(arrival.subject), arrival.share, std::move(arrival.account));
       arrivals.clear();
     }
     studio.let_go_of_ended();
@@ -191,11 +212,15 @@ bool RenderLoop::is_ready() const {
   return state_->warm;
 }
 
-void RenderLoop::add(std::shared_ptr<Subject> subject, Share share) {
+std::shared_ptr<RenderAccount> RenderLoop::make_account() {
+  return std::make_shared<RenderAccount>();
+}
+
+void RenderLoop::add(std::shared_ptr<Subject> subject, Share share, std::shared_ptr<RenderAccount> account) {
   {
     std::lock_guard lock(state_->mutex);
     if (state_->stopping) return;
-    state_->arrivals.emplace_back(std::move(subject), share);
+    state_->arrivals.push_back({std::move(subject), share, std::move(account)});
     state_->woken = true;
   }
   state_->changed.notify_one();

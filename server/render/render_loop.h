@@ -10,8 +10,11 @@
 
 namespace lightwell {
 
-/// Whose time a subject's pictures are made in: every subject of kOwn has a share, all of kJobs have one together.
+/// Whose time a subject's pictures are made in: every account of kOwn has a share, all of kJobs have one together.
 enum class Share { kOwn, kJobs };
+
+/// A share of the time. Its subjects have equal parts of it.
+struct RenderAccount;
 
 class RenderLoop {
  public:
@@ -28,7 +31,10 @@ class RenderLoop {
   std::shared_future<SourceFacts> ready() const;
   bool is_ready() const;
 
-  void add(std::shared_ptr<Subject> subject, Share share);
+  static std::shared_ptr<RenderAccount> make_account();
+
+  /// `account`: of kOwn; null: one for this subject alone.
+  void add(std::shared_ptr<Subject> subject, Share share, std::shared_ptr<RenderAccount> account = nullptr);
   /// A subject's answers may have changed: it is due, or has ended. Cheap, from any thread.
   void wake();
 

@@ -53,7 +53,66 @@ std::optional<Problem> Session::change(const protocol::SessionPatch& patch, View
     std::lock_guard lock(state_mutex_);
     state_ = std::make_shared<const SessionState>(std::move(next).value());
   }
+  if (patch.scene) end_looks();  // another scene is another place
   audience_.tell_change(members_of(patch), by, seq);
+  surroundings_.wake_render_loop();
+  return {};
+}
+
+/// The look that a viewer has, or a new one if there may be another.
+protocol::Decoded<std::shared_ptr<OwnLook>> Session::own_look_of(Viewer& viewer) {
+  std::lock_guard lock(looks_mutex_);
+  if (const auto found = looks_.find(&viewer); found != looks_.end()) return found->second;
+  const auto most = static_cast<std::size_t>(surroundings_.rules.limits.max_own_looks);
+  if (looks_.size() >= most)
+    return make_problem(503, std::to_string(most) + " viewers look at this session for themselves, as many as may");
+  auto look = std::make_shared<OwnLook>(shared_from_this(), viewer.shared_from_this());
+  looks_.emplace(&viewer, look);
+  return look;
+}
+
+/// False if there was none.
+bool Session::end_look(Viewer& viewer) {
+  std::shared_ptr<OwnLook> ended;
+  {
+    std::lock_guard lock(looks_mutex_);
+    const auto found = looks_.find(&viewer);
+    if (found == looks_.end()) return false;
+    ended = std::move(found->second);
+    looks_.erase(found);
+  }
+  ended->end();
+  viewer.watch(audience_.source(), false);
+  return true;
+}
+
+void Session::end_looks() {
+  std::vector<std::shared_ptr<Viewer>> viewers;
+  {
+    std::lock_guard lock(looks_mutex_);
+    for (const auto& [viewer, look] : looks_) viewers.push_back(viewer->shared_from_this());
+  }
+  for (const auto& viewer : viewers) end_look(*viewer);
+}
+
+std::optional<Problem> Session::apply_look(const protocol::Look& look, Viewer& by) {
+  const std::shared_ptr<const SessionState> state = this->state();
+  if (look.shares_pictures()) {
+    end_look(by);
+    by.input_applied(state->revision, look.seq);
+    if (!state->moving()) audience_.show_latest(by, state->revision);
+    surroundings_.wake_render_loop();
+    return {};
+  }
+  const SessionState wanted = looked_at(*state, look);
+  if (auto problem = check_size(wanted.size_px, surroundings_.rules.limits, "")) return problem;
+  if (auto camera = wanted.stage->place(wanted.camera, 0.0, wanted.aspect_ratio()); !camera) return camera.problem();
+  const auto own = own_look_of(by);
+  if (!own) return own.problem();
+  const bool is_new = by.source() != (*own)->audience().source();
+  by.input_applied((*own)->change(look), look.seq);
+  by.watch((*own)->audience().source(), look.camera.has_value());
+  if (is_new) surroundings_.direct(*own, account_);
   surroundings_.wake_render_loop();
   return {};
 }
@@ -88,6 +147,7 @@ SteadyTime Session::idle_since() const {
 
 protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream(bool may_drive) {
   auto viewer = std::make_shared<Viewer>(shared_from_this(), may_drive);
+  viewer->watch(audience_.source(), false);
   const auto most = static_cast<std::size_t>(surroundings_.rules.limits.max_viewers_per_session);
   if (!audience_.join(viewer, most))
     return make_problem(503, "the session has " + std::to_string(most) + " viewers, as many as it may have");
@@ -161,7 +221,8 @@ std::shared_ptr<const SessionState> Session::state() const {
   return state_;
 }
 
-void Session::leave(const Viewer& viewer) {
+void Session::leave(Viewer& viewer) {
+  end_look(viewer);
   {
     std::lock_guard lock(driver_mutex_);
     if (driver_ == &viewer) driver_ = nullptr;

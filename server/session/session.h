@@ -3,10 +3,13 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 
 #include "server/operations/metrics.h"
+#include "server/render/render_loop.h"
+#include "server/session/own_look.h"
 #include "server/session/session_state.h"
 #include "server/stream/audience.h"
 #include "server/stream/director.h"
@@ -20,6 +23,8 @@ struct SessionSurroundings {
   std::function<void()> wake_render_loop;
   std::function<std::string()> device;  // for welcomes: what pictures are made with
   std::function<std::vector<std::string>()> methods;
+  /// Has pictures made of what is directed, in the time of an account.
+  std::function<void(std::shared_ptr<DirectedSession>, std::shared_ptr<RenderAccount>)> direct;
 };
 
 /// Thread-safe. Readers get a state that never changes; writers make the next one, one at a time.
@@ -29,6 +34,8 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   Session(std::string id, SessionState state, const SessionSurroundings& surroundings, double idle_s);
 
   const std::string& id() const { return id_; }
+  /// Begins to have pictures made. Called once.
+  void begin() { surroundings_.direct(shared_from_this(), account_); }
   std::size_t viewers() const { return audience_.size(); }
   protocol::Session describe() const;
   /// All of `patch` or nothing.
@@ -53,11 +60,12 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   // ViewerHost
   protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) override;
   std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) override;
+  std::optional<protocol::Problem> apply_look(const protocol::Look& look, Viewer& by) override;
   protocol::StateUpdate change_of(unsigned members) const override;
   void window_opened() override { surroundings_.wake_render_loop(); }
   void picture_sent(std::uint64_t bytes) override { surroundings_.metrics.picture_sent(bytes); }
   void picture_acknowledged(double seconds) override { surroundings_.metrics.picture_acknowledged(seconds); }
-  void leave(const Viewer& viewer) override;
+  void leave(Viewer& viewer) override;
 
   // DirectedSession
   std::shared_ptr<const SessionState> state() const override;
@@ -73,12 +81,19 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   protocol::Welcome welcome(const SessionState& state) const;
   protocol::Role seat(protocol::Role wanted, const Viewer& viewer);
   void resume(const std::string& token);
+  protocol::Decoded<std::shared_ptr<OwnLook>> own_look_of(Viewer& viewer);
+  bool end_look(Viewer& viewer);
+  void end_looks();
 
   const std::string id_;
   const SessionSurroundings& surroundings_;
   const double idle_s_;
-  Audience audience_;
+  const std::shared_ptr<RenderAccount> account_ = RenderLoop::make_account();  // of all its pictures
+  Audience audience_;  // all its viewers, those too who look for themselves
   std::atomic<bool> ended_ = false;
+
+  std::mutex looks_mutex_;
+  std::map<Viewer*, std::shared_ptr<OwnLook>> looks_;  // of viewers that have not left
 
   std::mutex change_mutex_;  // one change at a time; taken before state_mutex_
   mutable std::mutex state_mutex_;

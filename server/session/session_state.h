@@ -34,6 +34,7 @@ struct SessionState {
   glm::ivec2 size_px{0};
   Clock clock;
   std::uint64_t revision = 1;  // counts all changes
+  std::uint64_t looks = 0;     // of them, those of a viewer's own look; 0 but in what OwnView makes of it
 
   float aspect_ratio() const { return static_cast<float>(size_px.x) / static_cast<float>(size_px.y); }
   /// Whether its pictures change by themselves.

@@ -1,8 +1,15 @@
 #include "server/stream/audience.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace lightwell {
+
+Audience::Audience()
+    : source_([] {
+        static std::atomic<std::uint64_t> sources = 0;
+        return ++sources;
+      }()) {}
 
 bool Audience::join(std::shared_ptr<Viewer> viewer, std::size_t most) {
   std::lock_guard lock(mutex_);
@@ -35,14 +42,14 @@ std::size_t Audience::size() const {
 }
 
 bool Audience::wants_picture(int in_the_making) const {
-  const auto all = viewers();
+  const auto all = spectators();
   return std::any_of(all.begin(), all.end(), [&](const auto& viewer) {
     return viewer->watching() && viewer->pictures_on_the_way() + in_the_making < kMostInFlight;
   });
 }
 
 LinkPace Audience::pace() const {
-  const auto all = viewers();
+  const auto all = spectators();
   const auto driver = std::find_if(all.begin(), all.end(), [](const auto& viewer) { return viewer->drives(); });
   if (driver != all.end()) return (*driver)->pace();
   return all.empty() ? LinkPace() : all.front()->pace();
@@ -78,6 +85,13 @@ void Audience::end_resumed(const std::string& resume_token) {
 
 void Audience::check_patience(SteadyTime now) {
   for (const auto& viewer : viewers()) viewer->check_patience(now);
+}
+
+/// Those who see this audience's pictures.
+std::vector<std::shared_ptr<Viewer>> Audience::spectators() const {
+  std::vector<std::shared_ptr<Viewer>> all = viewers();
+  std::erase_if(all, [&](const auto& viewer) { return viewer->source() != source_; });
+  return all;
 }
 
 std::vector<std::shared_ptr<Viewer>> Audience::viewers() const {

@@ -1,4 +1,4 @@
-// All viewers of one session, and the picture they were shown last.
+// Viewers who see the same pictures, and the picture they were shown last.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,11 @@ namespace lightwell {
 /// Thread-safe. Calls viewers without its own lock.
 class Audience {
  public:
+  Audience();
+
+  /// What its pictures are marked with; no other audience has it. A viewer may be in several, and sees one of them.
+  std::uint64_t source() const { return source_; }
+
   /// False if there are `most` already.
   bool join(std::shared_ptr<Viewer> viewer, std::size_t most);
   /// Gives one of them the latest picture, if it shows `revision`.
@@ -25,7 +30,7 @@ class Audience {
   /// The link that pictures are made for: the driver's, or of whoever came first. What others cannot take they skip.
   LinkPace pace() const;
 
-  /// Gives everyone a picture, unless a newer one came before.
+  /// Gives everyone who sees this audience a picture, unless a newer one came before.
   void show(std::shared_ptr<const Picture> picture);
   /// `by`: the viewer whose input `seq` it was, or null.
   void tell_change(unsigned members, const Viewer* by, std::uint32_t seq);
@@ -37,6 +42,9 @@ class Audience {
 
  private:
   std::vector<std::shared_ptr<Viewer>> viewers() const;
+  std::vector<std::shared_ptr<Viewer>> spectators() const;
+
+  const std::uint64_t source_;
 
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<Viewer>> viewers_;

@@ -165,8 +165,10 @@ void Director::show(const Take& take, const Frame& frame, std::uint64_t number) 
   }
 
   auto picture = std::make_shared<Picture>();
+  picture->source = session_->audience().source();
   picture->number = number;
   picture->revision = take.state->revision;
+  picture->scene_revision = take.state->revision - take.state->looks;
   picture->file = std::make_shared<const std::vector<std::uint8_t>>(std::move(file).value());
   picture->is_final = take.is_final;
   picture->capture_ms = std::chrono::duration<double, std::milli>(take.start.time_since_epoch()).count();

@@ -23,7 +23,7 @@ struct DirectorOptions {
   int final_quality = 95;
 };
 
-/// A session as the director sees it.
+/// A session, or a viewer's own look at one, as the director sees it.
 class DirectedSession {
  public:
   virtual ~DirectedSession() = default;

@@ -19,8 +19,10 @@ struct Placement {
 };
 
 struct Picture {
-  std::uint64_t number = 0;  // ascending within the session
-  std::uint64_t revision = 0;
+  std::uint64_t source = 0;                               // the audience it was made for
+  std::uint64_t number = 0;                               // ascending within the source
+  std::uint64_t revision = 0;                             // of the state it shows
+  std::uint64_t scene_revision = 0;                       // of the session
   std::shared_ptr<const std::vector<std::uint8_t>> file;  // JPEG
   bool is_final = false;
   double capture_ms = 0.0;

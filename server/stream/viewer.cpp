@@ -1,9 +1,7 @@
 #include "server/stream/viewer.h"
 
-#include <algorithm>
 #include <utility>
 
-#include "protocol/frame_header.h"
 #include "server/random_id.h"
 
 namespace lightwell {
@@ -14,16 +12,7 @@ using std::chrono::steady_clock;
 
 constexpr auto kPatience = std::chrono::seconds(10);        // with a client that acknowledges nothing, or says no hello
 constexpr auto kClosingPatience = std::chrono::seconds(3);  // with one that does not even read the end
-constexpr auto kStatsInterval = std::chrono::milliseconds(250);
-constexpr std::size_t kMostTexts = 64;     // that wait: more, and the client asks without reading the answers
-constexpr std::size_t kMostInputs = 4096;  // remembered until a picture shows them
-
-/// RFC 6455 leaves 123 bytes for a close frame's reason, which must be whole UTF-8.
-std::string close_reason(const std::string& text) {
-  std::size_t size = std::min<std::size_t>(text.size(), 123);
-  while (size < text.size() && size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) --size;
-  return text.substr(0, size);
-}
+constexpr std::size_t kMostInputs = 4096;                   // remembered until a picture shows them
 
 }  // namespace
 
@@ -62,8 +51,9 @@ void Viewer::received_binary(std::string_view) {
 void Viewer::refuse_text(std::string_view text, const Problem& problem) {
   if (problem.status != 422) return bad_message(problem.detail);
   const auto json = protocol::parse_json(text);
-  const bool is_input = json && json->is_object() && json->value("type", nlohmann::json()) == "input";
-  const nlohmann::json seq = is_input ? json->value("seq", nlohmann::json()) : nlohmann::json();
+  const nlohmann::json type = json && json->is_object() ? json->value("type", nlohmann::json()) : nlohmann::json();
+  const nlohmann::json seq =
+      type == "input" || type == "look" ? json->value("seq", nlohmann::json()) : nlohmann::json();
   const bool has_seq = seq.is_number_unsigned() && seq.get<std::uint64_t>() <= 0xffffffffu;
   std::lock_guard lock(mutex_);
   if (!has_seq || stage_ != Stage::kWatching)
@@ -93,18 +83,33 @@ void Viewer::received(const protocol::Hello& hello) {
 }
 
 void Viewer::received(const protocol::Input& input) {
+  if (drives_) return take_numbered(input, &ViewerHost::apply_input);
+  std::lock_guard lock(mutex_);
+  queue_text(protocol::ErrorMessage{
+      protocol::make_problem(403, "a viewer only watches: its inputs are not taken, but it may look for itself"),
+      input.seq});
+}
+
+void Viewer::received(const protocol::Look& look) {
+  if (!drives_) return take_numbered(look, &ViewerHost::apply_look);
+  std::lock_guard lock(mutex_);
+  queue_text(protocol::ErrorMessage{
+      protocol::make_problem(422, "a driver looks as the session does: its camera and size are inputs"), look.seq});
+}
+
+template <class Message>
+void Viewer::take_numbered(const Message& message,
+                           std::optional<Problem> (ViewerHost::*apply)(const Message&, Viewer&)) {
   std::optional<Problem> problem;
-  if (!drives_)
-    problem = protocol::make_problem(403, "a viewer only watches: its inputs are not taken");
-  else if (input.seq <= last_seq_)
+  if (message.seq <= last_seq_) {
     problem = protocol::make_problem(422, "seq does not ascend", "/seq");
-  else {
-    last_seq_ = input.seq;
-    problem = host_->apply_input(input, *this);
+  } else {
+    last_seq_ = message.seq;
+    problem = (host_.get()->*apply)(message, *this);
   }
   if (!problem) return;
   std::lock_guard lock(mutex_);
-  queue_text(protocol::ErrorMessage{*problem, input.seq});
+  queue_text(protocol::ErrorMessage{*problem, message.seq});
 }
 
 void Viewer::received(const protocol::Ack& ack) {
@@ -137,20 +142,34 @@ void Viewer::closed() {
 
 void Viewer::offer(std::shared_ptr<const Picture> picture) {
   std::lock_guard lock(mutex_);
-  if (waiting_ && waiting_->number > picture->number) return;
+  if (picture->source != source_ || (waiting_ && waiting_->number > picture->number)) return;
   waiting_ = std::move(picture);
   if (may_send_picture()) wake();
 }
 
+void Viewer::watch(std::uint64_t source, bool own_camera) {
+  std::lock_guard lock(mutex_);
+  if (source_ != source) waiting_.reset();
+  source_ = source;
+  own_camera_ = own_camera;
+}
+
+std::uint64_t Viewer::source() const {
+  std::lock_guard lock(mutex_);
+  return source_;
+}
+
 void Viewer::input_applied(std::uint64_t revision, std::uint32_t seq) {
   std::lock_guard lock(mutex_);
+  // Another source counts otherwise: what would be shown later is so in the same picture at the latest.
+  while (!applied_.empty() && applied_.back().revision > revision) applied_.pop_back();
   applied_.push_back({revision, seq});
   if (applied_.size() > kMostInputs) applied_.pop_front();
 }
 
 void Viewer::state_changed(unsigned members, std::optional<std::uint32_t> seq) {
   std::lock_guard lock(mutex_);
-  if (seq) members &= ~kChangedCamera;  // nobody knows it better than who moved it
+  if (seq || own_camera_) members &= ~kChangedCamera;  // nobody knows it better than who moves it
   members &= ~kChangedSize;
   if (members == 0) return;
   if (seq) changed_by_seq_ = seq;
@@ -195,112 +214,6 @@ void Viewer::check_patience(SteadyTime now) {
   if (stage_ == Stage::kWatching && !in_flight_.empty() && now - in_flight_.front().at > kPatience)
     queue_end(protocol::CloseCode::kTooSlow, "a frame was not acknowledged within 10 seconds", true);
   if (stage_ == Stage::kEnding && now - ending_since_ > kClosingPatience && link_) link_->abort();
-}
-
-// What is sent. All that follows is called with the lock held, save `next`, which takes it.
-
-net::Outgoing Viewer::next() {
-  std::lock_guard lock(mutex_);
-  if (!texts_.empty()) {
-    net::TextMessage text{std::move(texts_.front())};
-    texts_.pop_front();
-    return text;
-  }
-  if (closing_) return *closing_;
-  if (stage_ != Stage::kWatching) return {};
-  if (changed_members_ != 0) return net::TextMessage{take_state_update()};
-  if (!may_send_picture()) return {};
-  if (*waiting_->placement != *placement_) return net::TextMessage{take_placement()};
-  return take_picture();
-}
-
-bool Viewer::may_send_picture() const {
-  return waiting_ && stage_ == Stage::kWatching && in_flight_.size() < kMostInFlight;
-}
-
-void Viewer::wake() {
-  if (link_) link_->wake();
-}
-
-void Viewer::queue_text(const protocol::ServerMessage& message) {
-  if (stage_ == Stage::kEnding || stage_ == Stage::kClosed) return;
-  if (texts_.size() >= kMostTexts)
-    return queue_end(protocol::CloseCode::kBadMessage, "more is asked than answers are read", true);
-  texts_.push_back(protocol::serialize(message));
-  wake();
-}
-
-void Viewer::queue_end(protocol::CloseCode code, const std::string& reason, bool reconnect) {
-  if (stage_ == Stage::kEnding || stage_ == Stage::kClosed) return;
-  texts_.push_back(protocol::serialize(protocol::Bye{reason, reconnect}));
-  closing_ = net::CloseMessage{static_cast<std::uint16_t>(code), close_reason(reason)};
-  stage_ = Stage::kEnding;
-  ending_since_ = steady_clock::now();
-  waiting_.reset();
-  wake();
-}
-
-std::string Viewer::take_state_update() {
-  protocol::StateUpdate update = host_->change_of(std::exchange(changed_members_, 0u));
-  update.seq = std::exchange(changed_by_seq_, std::nullopt);
-  return protocol::serialize(update);
-}
-
-std::string Viewer::take_placement() {
-  placement_ = waiting_->placement;
-  return protocol::serialize(protocol::PoseUpdate{last_frame_ + 1, placement_->view, placement_->lights});
-}
-
-net::Outgoing Viewer::take_picture() {
-  const std::shared_ptr<const Picture> picture = std::move(waiting_);
-  const SteadyTime now = steady_clock::now();
-  note_shown_inputs(picture->revision);
-  protocol::FrameHeader header;
-  header.is_final = picture->is_final;
-  header.frame = ++last_frame_;
-  header.input_seq = shown_seq_;
-  header.scene_revision = picture->revision;
-  header.capture_ms = picture->capture_ms;
-  header.scene_time_s = static_cast<float>(picture->stats.time_s);
-  header.width = picture->width;
-  header.height = picture->height;
-  header.payload_bytes = static_cast<std::uint32_t>(picture->file->size());
-  header.render_ms = static_cast<float>(picture->stats.render_ms);
-  const auto bytes_sent = static_cast<double>(picture->file->size());
-  const double before = in_flight_.empty() ? 0.0 : in_flight_.back().bytes;
-  in_flight_.push_back({last_frame_, now, bytes_sent, before + bytes_sent});
-  sent_times_.push_back(now);
-  queue_stats(*picture, now);
-  host_->picture_sent(picture->file->size());
-  const auto bytes = protocol::encode_frame_header(header);
-  return net::BinaryMessage{std::string(bytes.begin(), bytes.end()), picture->file};
-}
-
-void Viewer::note_arrival(const Sent& sent, const protocol::Ack& ack, SteadyTime now) {
-  const auto seconds_since = [now](SteadyTime then) { return std::chrono::duration<double>(now - then).count(); };
-  host_->picture_acknowledged(seconds_since(sent.at));
-  if (!ack.held_ms) {
-    const double gap_s = sent.at < last_arrival_ ? seconds_since(last_arrival_) : 0.0;
-    pace_.arrived({sent.bytes, sent.bytes_on_the_way, seconds_since(sent.at), gap_s});
-  }
-  last_arrival_ = now;
-}
-
-void Viewer::note_shown_inputs(std::uint64_t revision) {
-  while (!applied_.empty() && applied_.front().revision <= revision) {
-    shown_seq_ = applied_.front().seq;
-    applied_.pop_front();
-  }
-}
-
-void Viewer::queue_stats(const Picture& picture, SteadyTime now) {
-  while (now - sent_times_.front() > std::chrono::seconds(1)) sent_times_.pop_front();
-  if (now - stats_sent_ < kStatsInterval && !picture.is_final) return;
-  stats_sent_ = now;
-  protocol::Stats stats = picture.stats;
-  const double span_s = std::chrono::duration<double>(now - sent_times_.front()).count();
-  stats.fps = span_s > 0.0 ? static_cast<double>(sent_times_.size() - 1) / span_s : 0.0;
-  texts_.push_back(protocol::serialize(stats));
 }
 
 }  // namespace lightwell

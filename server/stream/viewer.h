@@ -28,6 +28,8 @@ class ViewerHost {
   /// Answers a hello. A problem ends the stream.
   virtual protocol::Decoded<protocol::Welcome> greet(const protocol::Hello& hello, Viewer& viewer) = 0;
   virtual std::optional<protocol::Problem> apply_input(const protocol::Input& input, Viewer& by) = 0;
+  /// Only viewers that do not drive look for themselves.
+  virtual std::optional<protocol::Problem> apply_look(const protocol::Look& look, Viewer& by) = 0;
   /// What viewers are told when these members have changed.
   virtual protocol::StateUpdate change_of(unsigned members) const = 0;
   virtual void picture_sent(std::uint64_t bytes) = 0;
@@ -35,10 +37,10 @@ class ViewerHost {
   virtual void picture_acknowledged(double seconds) = 0;
   /// The viewer can take a picture again.
   virtual void window_opened() = 0;
-  virtual void leave(const Viewer& viewer) = 0;
+  virtual void leave(Viewer& viewer) = 0;
 };
 
-class Viewer : public net::WebSocketHandler {
+class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this<Viewer> {
  public:
   /// `may_drive`: its client's token allows it.
   Viewer(std::shared_ptr<ViewerHost> host, bool may_drive);
@@ -52,7 +54,11 @@ class Viewer : public net::WebSocketHandler {
 
   // From any thread.
 
-  /// A newer picture than any before. Replaces one that waits to be sent.
+  /// From here on it sees the pictures of this source alone (Audience::source), with a camera of its own or the
+  /// session's.
+  void watch(std::uint64_t source, bool own_camera);
+  std::uint64_t source() const;
+  /// A newer picture of a source than any before; passed over if it is not the one watched. Replaces one that waits.
   void offer(std::shared_ptr<const Picture> picture);
   /// The input `seq` of this viewer is in pictures of `revision` and later ones. Told before any of them is made.
   void input_applied(std::uint64_t revision, std::uint32_t seq);
@@ -88,6 +94,10 @@ class Viewer : public net::WebSocketHandler {
 
   void received(const protocol::Hello& hello);
   void received(const protocol::Input& input);
+  void received(const protocol::Look& look);
+  template <class Message>
+  void take_numbered(const Message& message,
+                     std::optional<protocol::Problem> (ViewerHost::*apply)(const Message&, Viewer&));
   void received(const protocol::Ack& ack);
   void received(const protocol::Ping& ping);
   void refuse_text(std::string_view text, const protocol::Problem& problem);
@@ -114,6 +124,8 @@ class Viewer : public net::WebSocketHandler {
   std::shared_ptr<net::WebSocketLink> link_;
   enum class Stage { kAwaitingHello, kWatching, kEnding, kClosed } stage_ = Stage::kAwaitingHello;
   bool drives_ = false;
+  std::uint64_t source_ = 0;
+  bool own_camera_ = false;
   std::deque<std::string> texts_;             // small and few: welcome, pongs, errors, bye
   std::optional<net::CloseMessage> closing_;  // after the texts
   SteadyTime ending_since_{};

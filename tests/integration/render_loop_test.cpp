@@ -41,26 +41,29 @@ class Greedy : public Subject {
   SteadyTime start_{};
 };
 
+std::unique_ptr<RenderLoop> fake_loop() {
+  const auto warm_up = [] {
+    Shot shot;
+    shot.scene = std::make_shared<const Scene>();
+    shot.request.size_px = {1, 1};
+    return shot;
+  };
+  auto loop = std::make_unique<RenderLoop>(fake_source(std::make_shared<FakeStudio>()), warm_up,
+                                           [](Share, const Result<Frame>&, double) {});
+  loop->ready().wait();
+  return loop;
+}
+
 TEST(RenderLoop, GivesEverySessionItsShareAndAllRequestsOneTogether) {
-  const auto studio = std::make_shared<FakeStudio>();
-  RenderLoop loop(
-      fake_source(studio),
-      [] {
-        Shot shot;
-        shot.scene = std::make_shared<const Scene>();
-        shot.request.size_px = {1, 1};
-        return shot;
-      },
-      [](Share, const Result<Frame>&, double) {});
-  loop.ready().wait();
+  const auto loop = fake_loop();
   const auto light = std::make_shared<Greedy>(0), heavy = std::make_shared<Greedy>(15);
   std::vector<std::shared_ptr<Greedy>> requests;
   for (int i = 0; i < 3; ++i) requests.push_back(std::make_shared<Greedy>(5));
-  loop.add(light, Share::kOwn);
-  loop.add(heavy, Share::kOwn);
-  for (const auto& request : requests) loop.add(request, Share::kJobs);
+  loop->add(light, Share::kOwn);
+  loop->add(heavy, Share::kOwn);
+  for (const auto& request : requests) loop->add(request, Share::kJobs);
   EXPECT_TRUE(comes_true([&] { return light->used_s + heavy->used_s > 1.0; }));
-  loop.stop();
+  loop->stop();
 
   double of_requests_s = 0.0, longest_s = std::max(light->longest_s.load(), heavy->longest_s.load());
   for (const auto& request : requests) {
@@ -70,6 +73,21 @@ TEST(RenderLoop, GivesEverySessionItsShareAndAllRequestsOneTogether) {
   // Who has had least goes first: nobody is ever further ahead than by one picture, whatever else the machine does.
   EXPECT_LE(std::abs(light->used_s - heavy->used_s), 2.0 * longest_s);
   EXPECT_LE(std::abs(light->used_s - of_requests_s), 2.0 * longest_s);
+}
+
+TEST(RenderLoop, ALookOfOnesOwnTakesFromItsSessionsShare) {
+  const auto loop = fake_loop();
+  const auto account = RenderLoop::make_account();
+  const auto alone = std::make_shared<Greedy>(2), driver = std::make_shared<Greedy>(2),
+             look = std::make_shared<Greedy>(8);
+  loop->add(alone, Share::kOwn);
+  loop->add(driver, Share::kOwn, account);
+  loop->add(look, Share::kOwn, account);
+  EXPECT_TRUE(comes_true([&] { return alone->used_s > 0.5 && look->used_s > 0.1; }));
+  loop->stop();
+  const double longest_s = std::max({alone->longest_s.load(), driver->longest_s.load(), look->longest_s.load()});
+  EXPECT_LE(std::abs(alone->used_s - (driver->used_s + look->used_s)), 2.0 * longest_s);
+  EXPECT_LE(std::abs(driver->used_s - look->used_s), 2.0 * longest_s);
 }
 
 }  // namespace

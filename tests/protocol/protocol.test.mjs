@@ -40,6 +40,7 @@ for (const vector of vectors.invalid_frames) {
 const build = {
   hello: ({ type, ...options }) => protocol.hello(options),
   input: ({ type, seq, ...change }) => protocol.input(seq, change),
+  look: ({ type, seq, ...own }) => protocol.look(seq, own),
   ack: ({ type, frame, ...timing }) => protocol.ack(frame, timing),
   ping: ({ t }) => protocol.ping(t),
 };
