@@ -103,7 +103,8 @@ Result<long long> parse_integer(const std::string& text, long long least, long l
 
 Result<std::string> parse_device(const std::string& text) {
   constexpr int kMostDevices = 1000;
-  if (text == "software" || parse_integer(text, 0, kMostDevices)) return text;
+  if (text == "software") return text;
+  if (const auto index = parse_integer(text, 0, kMostDevices)) return std::to_string(*index);
   return expected("\"software\" or an index as `lightwell devices` prints it", text);
 }
 

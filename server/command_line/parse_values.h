@@ -36,7 +36,7 @@ Result<double> parse_number(const std::string& text, double least, double most);
 /// An integer in [least, most].
 Result<long long> parse_integer(const std::string& text, long long least, long long most);
 
-/// "software", or a device's index in decimal.
+/// "software", or a device's index in decimal, written plainly: -0 is 0.
 Result<std::string> parse_device(const std::string& text);
 
 /// Whether `pattern` holds a place for a frame's number: %d or %0Nd (N 1..9), exactly once, and no other %.

@@ -52,7 +52,7 @@ TEST(ParseValues, Numbers) {
 
 TEST(ParseValues, Devices) {
   EXPECT_EQ(*parse_device("software"), "software");
-  EXPECT_EQ(*parse_device("0"), "0");
+  for (const char* zero : {"0", "-0", "00"}) EXPECT_EQ(*parse_device(zero), "0") << zero;
   for (const char* bad : {"", "gpu", "-1", "1.5", "Software"}) EXPECT_FALSE(parse_device(bad)) << bad;
 }
 

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Fuzzes with one program for a time; says how it went in a line, or shows what failed.
+#   run_one.sh PROGRAM SECONDS
+# Found inputs stay beside the program in corpus/NAME, so that a later run goes on where this one ended.
+set -euo pipefail
+program=$1 seconds=$2
+name=${program##*/fuzz_}
+folder=$(dirname "$program")
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+corpus=$folder/corpus/$name
+log=$folder/fuzz_$name.log
+mkdir -p "$corpus"
+dictionary=()
+[[ ! -f $here/$name.dict ]] || dictionary=("-dict=$here/$name.dict")
+if "$program" -max_total_time="$seconds" -max_len=8192 -print_final_stats=1 "${dictionary[@]}" \
+  -artifact_prefix="$folder/failed_$name-" "$corpus" "$here/seeds/$name" > "$log" 2>&1; then
+  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  echo "fuzz: $name held for $seconds s, $runs inputs" >&2
+else
+  tail -n 100 "$log" >&2
+  echo "fuzz: $name FAILED; $log has it all" >&2
+  exit 1
+fi
