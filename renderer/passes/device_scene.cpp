@@ -121,6 +121,7 @@ void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multipl
                     : pose.lights.size() == 2 ? "TWO_LIGHTS 1"
                                               : "ONE_LIGHT 1"};
   if (points) light_defines_.emplace_back("POINT_LIGHTS 1");
+  if (has_tinted_shadows()) light_defines_.emplace_back("TINTED_SHADOWS 1");
   brdf_defines_ = lobe_defines_;
   if (multiple_scattering) brdf_defines_.emplace_back("MULTISCATTER 1");
   is_lambert_ = !has_lobes_ && std::all_of(pose.instances.begin(), pose.instances.end(), [&](const Instance& instance) {
@@ -172,12 +173,16 @@ void DeviceScene::upload_materials(const Scene& scene) {
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
   has_textures_ = has_all_textures_ = has_coverage_ = false;
+  has_clear_ = has_clear_walls_ = has_blend_ = false;
   has_lobes_ = std::any_of(scene.materials.begin(), scene.materials.end(), lightwell::has_lobes);
   for (const DeviceMaterial& material : packed) {
     has_textures_ |= material.base_color_texture.slot != 0;
     has_all_textures_ |=
         (material.metallic_roughness_texture.slot | material.normal_texture.slot | material.emissive_texture.slot) != 0;
     has_coverage_ |= (material.flags & (kDeviceMaterialMask | kDeviceMaterialBlend)) != 0;
+    has_blend_ |= (material.flags & kDeviceMaterialBlend) != 0;
+    has_clear_ |= (material.flags & kDeviceMaterialClear) != 0;
+    has_clear_walls_ |= (material.flags & kDeviceMaterialClearWall) != 0;
   }
   materials_.reserve(packed.size() * sizeof(DeviceMaterial));
   materials_.upload(std::span<const DeviceMaterial>(packed));

@@ -71,6 +71,11 @@ class DeviceScene {
   const gl::Defines& environment_defines() const { return environment_defines_; }
   /// Alpha masks or blends.
   bool has_coverage() const { return has_coverage_; }
+  /// Surfaces that light goes straight on through; the same without a volume behind them.
+  bool has_clear() const { return has_clear_; }
+  bool has_clear_walls() const { return has_clear_walls_; }
+  /// Clear surfaces or alpha blends: shadows with a colour (TINTED_SHADOWS).
+  bool has_tinted_shadows() const { return has_clear_ || has_blend_; }
   std::uint64_t triangles() const { return triangles_; }
 
   /// What the motion variant of g_buffer.vert is fed with as well: a DeviceInstanceBefore for each instance.
@@ -107,6 +112,7 @@ class DeviceScene {
   GLuint vertex_array_ = 0;
   Draws draws_[3];
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false, is_lambert_ = false;
+  bool has_clear_ = false, has_clear_walls_ = false, has_blend_ = false;
   gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_;
   std::uint64_t triangles_ = 0;
 };

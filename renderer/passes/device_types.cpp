@@ -140,6 +140,15 @@ bool has_lobes(const Material& material) {
          material.specular_texture.texture >= 0 || material.specular_color_texture.texture >= 0;
 }
 
+bool is_clear(const Material& material) {
+  constexpr float kClearRoughness = 0.1f;  // microfacets bend what passes a thin wall by about a degree
+  return material.transmission_factor > 0.0f && material.roughness_factor <= kClearRoughness && !material.unlit;
+}
+
+bool is_clear_wall(const Material& material) {
+  return is_clear(material) && !(material.thickness_factor > 0.0f);
+}
+
 DeviceMaterial pack_material(const Material& material, const SceneTextures& textures) {
   DeviceMaterial packed{};
   packed.base_color = material.base_color_factor;
@@ -155,7 +164,8 @@ DeviceMaterial pack_material(const Material& material, const SceneTextures& text
   packed.flags = (material.alpha_mode == AlphaMode::kMask ? kDeviceMaterialMask : 0u) |
                  (material.alpha_mode == AlphaMode::kBlend ? kDeviceMaterialBlend : 0u) |
                  (material.double_sided ? kDeviceMaterialDoubleSided : 0u) |
-                 (material.unlit ? kDeviceMaterialUnlit : 0u);
+                 (material.unlit ? kDeviceMaterialUnlit : 0u) | (is_clear(material) ? kDeviceMaterialClear : 0u) |
+                 (is_clear_wall(material) ? kDeviceMaterialClearWall : 0u);
   packed.alpha_cutoff = material.alpha_cutoff;
   packed.base_color_texture = pack_use(material.base_color_texture, true, textures);
   packed.metallic_roughness_texture = pack_use(material.metallic_roughness_texture, false, textures);

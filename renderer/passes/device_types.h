@@ -48,6 +48,7 @@ static_assert(sizeof(DeviceInstanceBefore) == 64);
 constexpr std::uint32_t kDeviceInstanceMirrored = 1;
 constexpr std::uint32_t kDeviceMaterialMask = 1, kDeviceMaterialBlend = 2;
 constexpr std::uint32_t kDeviceMaterialDoubleSided = 4, kDeviceMaterialUnlit = 8;
+constexpr std::uint32_t kDeviceMaterialClear = 16, kDeviceMaterialClearWall = 32;
 
 struct DeviceTextureUse {
   glm::vec4 uv_transform{1.0f, 0.0f, 0.0f, 1.0f};
@@ -105,6 +106,11 @@ bool has_lobes(const Material& material);
 
 /// Whether its light is all reflected by the diffuse base: no metal, and nothing at the interface.
 bool is_lambert(const Material& material);
+/// Whether light goes straight on through it: transmission by a surface so smooth that it does not spread what it
+/// passes. A volume's refraction is for those that follow its paths.
+bool is_clear(const Material& material);
+/// The same without a volume: the way of the light is straight in truth.
+bool is_clear_wall(const Material& material);
 DeviceMaterial pack_material(const Material& material, const SceneTextures& textures);
 
 }  // namespace lightwell

@@ -6,6 +6,10 @@
 #include "shaders/scene_data.glsl"
 #include "shaders/vertex_input.glsl"
 
+#ifdef LIGHT_VIEW
+uniform mat4 light_clip_from_world;
+#endif
+
 out vec3 world_position;
 out vec3 world_normal;
 #ifdef HAS_TEXTURES
@@ -60,5 +64,9 @@ void main() {
 #ifdef MOTION
   displacement_ws = displacement(instance);
 #endif
+#ifdef LIGHT_VIEW
+  gl_Position = light_clip_from_world * vec4(world_position, 1.0);
+#else
   gl_Position = camera.clip_from_world * vec4(world_position, 1.0);
+#endif
 }

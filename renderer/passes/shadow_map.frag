@@ -18,14 +18,15 @@ layout(location = 0) out vec2 out_moments;
 void main() {
 #ifdef HAS_TEXTURES
   const Material material = fetch_material(material_index);
+#ifdef TINTED_SHADOWS
+  if ((material.flags & kMaterialClear) != 0u) discard;  // see clear_layers.frag
+#endif
   if ((material.flags & (kMaterialAlphaMask | kMaterialAlphaBlend)) != 0u) {
     float alpha = material.base_color.a;
     if (material.base_color_texture.slot != 0u)
       alpha *= sample_color_texture(material.base_color_texture, texture_uv.xy, texture_uv.zw, vec2(0.0)).a;
     const bool masked = (material.flags & kMaterialAlphaMask) != 0u;
-    const float threshold =
-        masked ? material.alpha_cutoff : unit_interval(hash(uvec3(gl_FragCoord.xy, 0x51u))) + 1e-6;
-    if (alpha < threshold) discard;
+    if (alpha < (masked ? material.alpha_cutoff : kOpaqueAlpha)) discard;
   }
 #endif
   const float depth = light_position_far.w > 0.0

@@ -53,7 +53,7 @@ glm::mat4 light_from_world(glm::vec3 position, glm::vec3 direction) {
 }
 
 // A box around the scene, seen along the light. Depth 0 to 1 through the box.
-glm::mat4 directional_clip(const Pose& pose, glm::vec3 direction) {
+LightView directional_view(const Pose& pose, glm::vec3 direction) {
   const glm::mat4 turned = light_from_world(glm::vec3(0.0f), direction);
   glm::vec3 low(1e30f), high(-1e30f);
   for (int corner = 0; corner < 8; ++corner) {
@@ -73,7 +73,7 @@ glm::mat4 directional_clip(const Pose& pose, glm::vec3 direction) {
   clip[1][1] = scale.y;
   clip[2][2] = scale.z;
   clip[3] = glm::vec4(-(low.x + high.x) / (high.x - low.x), -(low.y + high.y) / (high.y - low.y), -low.z * scale.z, 1);
-  return clip * turned;
+  return {clip * turned, glm::vec4(0.0f), glm::vec4(direction, high.z - low.z)};
 }
 
 // A pyramid of the given half angle's tangent; depth grows from 0 at `near`, and is not what is stored.
@@ -125,12 +125,16 @@ DeviceLight pack_light(const PlacedLight& placed) {
 
 void ShadowMaps::bind() const {
   moments.bind(UNIT_SHADOW_MOMENTS);
+  if (tints) tints->bind(UNIT_SHADOW_TINT);
   lights.bind_uniform(BINDING_LIGHTS);
 }
 
 ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
     : plain_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag")),
       covered_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
+      tinted_(
+          shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1", "TINTED_SHADOWS 1"})),
+      tints_pass_(shaders),
       filter_program_(shaders.raster("passes/full_screen.vert", "passes/shadow_filter.frag")),
       filter_direction_(filter_program_, "direction"),
       filter_radius_(filter_program_, "radius"),
@@ -174,8 +178,8 @@ float ShadowMapsPass::cube_tangent() const {
 }
 
 // Fills the light buffer and gives the view of each layer.
-std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose) {
-  std::vector<View> views;
+std::vector<LightView> ShadowMapsPass::place_lights(const Pose& pose) {
+  std::vector<LightView> views;
   std::vector<DeviceLight> lights;
   for (const PlacedLight& placed : pose.lights) {
     if (lights.size() == MAX_LIGHTS) break;
@@ -185,18 +189,18 @@ std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose)
       light.first_shadow_layer = static_cast<std::int32_t>(views.size());
       const glm::vec3 at = placed.position_ws;
       light.shadow_far_m = farthest_corner_m(pose, at);
-      const glm::vec4 position_far(at, light.shadow_far_m);
+      const glm::vec4 position_far(at, light.shadow_far_m), range(0.0f, 0.0f, 0.0f, light.shadow_far_m);
       const float near = light.shadow_far_m * 1e-4f;
       if (placed.light.kind == LightKind::kDirectional) {
-        views.push_back({directional_clip(pose, placed.direction_ws), glm::vec4(0.0f)});
+        views.push_back(directional_view(pose, placed.direction_ws));
       } else if (placed.light.kind == LightKind::kSpot) {
         const float tangent = std::tan(std::min(placed.light.outer_cone_angle, 1.5f)) * 1.02f;
         views.push_back(
             {perspective_clip(tangent, near, light.shadow_far_m) * light_from_world(at, placed.direction_ws),
-             position_far});
+             position_far, range});
       } else {
         for (const glm::mat4& face : cube_clips(at, cube_tangent(), near, light.shadow_far_m))
-          views.push_back({face, position_far});
+          views.push_back({face, position_far, range});
       }
       light.shadow_clip_from_world = views[static_cast<std::size_t>(light.first_shadow_layer)].clip_from_world;
     }
@@ -211,12 +215,12 @@ std::vector<ShadowMapsPass::View> ShadowMapsPass::place_lights(const Pose& pose)
   return views;
 }
 
-void ShadowMapsPass::draw(const DeviceScene& scene, const View& view) {
+void ShadowMapsPass::draw(const DeviceScene& scene, const LightView& view) {
   raw_framebuffer_.bind();
   const GLfloat far[4] = {1, 1, 0, 0};
   glClearNamedFramebufferfv(raw_framebuffer_.id(), GL_COLOR, 0, far);
   glClearNamedFramebufferfv(raw_framebuffer_.id(), GL_DEPTH, 0, far);
-  const Variant& variant = scene.has_coverage() ? covered_ : plain_;
+  const Variant& variant = scene.has_clear() ? tinted_ : scene.has_coverage() ? covered_ : plain_;
   variant.program->use();
   variant.clip_from_world = view.clip_from_world;
   variant.position_far = view.position_far;
@@ -236,9 +240,14 @@ void ShadowMapsPass::filter_pass(const gl::Texture& from, const gl::Framebuffer&
   full_screen_.draw_full_screen();
 }
 
+// In the map of half the side.
+int ShadowMapsPass::filter_radius() const {
+  return filter_px_ <= 3 ? 0 : (filter_px_ + 1) / 4;
+}
+
 void ShadowMapsPass::filter_into(int layer) {
   const gl::Framebuffer& target = layers_[static_cast<std::size_t>(layer)];
-  const int radius = filter_px_ <= 3 ? 0 : (filter_px_ + 1) / 4;  // in the map of half the side
+  const int radius = filter_radius();
   if (radius == 0) return filter_pass(raw_, target, {0, 0}, 0);
   filter_pass(raw_, half_framebuffers_[0], {0, 0}, 0);
   filter_pass(half_[0], half_framebuffers_[1], {1, 0}, radius);
@@ -246,10 +255,14 @@ void ShadowMapsPass::filter_into(int layer) {
 }
 
 const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose) {
-  const std::vector<View> views = place_lights(pose);
+  const std::vector<LightView> views = place_lights(pose);
+  const bool tinted = scene.has_tinted_shadows();
+  if (tinted) tints_pass_.resize(raw_.size_px(), maps_.moments.size_px(), maps_.moments.layers(), filter_radius());
+  maps_.tints = tinted ? &tints_pass_.tints() : nullptr;
   for (std::size_t layer = 0; layer < views.size(); ++layer) {
     draw(scene, views[layer]);
     filter_into(static_cast<int>(layer));
+    if (tinted) tints_pass_.run(scene, raw_, views[layer], static_cast<int>(layer));
   }
   return maps_;
 }

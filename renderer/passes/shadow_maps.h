@@ -7,6 +7,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/device_scene.h"
+#include "renderer/passes/shadow_tints.h"
 #include "renderer/scene/pose.h"
 
 namespace lightwell {
@@ -15,6 +16,7 @@ namespace lightwell {
 struct ShadowMaps {
   gl::Texture moments;  // RG32F, one layer a light (six a point light); half the rendered side unless unfiltered
   gl::Buffer lights;
+  const gl::Texture* tints = nullptr;  // of ShadowTintsPass, where DeviceScene::has_tinted_shadows()
   void bind() const;
 };
 
@@ -41,17 +43,15 @@ class ShadowMapsPass {
     gl::Uniform<glm::mat4> clip_from_world;
     gl::Uniform<glm::vec4> position_far;
   };
-  struct View {
-    glm::mat4 clip_from_world;
-    glm::vec4 position_far;  // w 0: directional
-  };
-  std::vector<View> place_lights(const Pose& pose);
+  std::vector<LightView> place_lights(const Pose& pose);
   float cube_tangent() const;
-  void draw(const DeviceScene& scene, const View& view);
+  void draw(const DeviceScene& scene, const LightView& view);
+  int filter_radius() const;
   void filter_into(int layer);
   void filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction, int radius);
 
-  Variant plain_, covered_;
+  Variant plain_, covered_, tinted_;
+  ShadowTintsPass tints_pass_;
   gl::ProgramPtr filter_program_;
   gl::Uniform<glm::ivec2> filter_direction_;
   gl::Uniform<int> filter_radius_;

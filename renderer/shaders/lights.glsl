@@ -1,6 +1,6 @@
 // Punctual lights and their variance shadow maps. Needs bindings, brdf, sampling.
 // Defines, for what a scene has: MANY_LIGHTS for more than two, TWO_LIGHTS for two, else there is one or none.
-// POINT_LIGHTS if some of them are.
+// POINT_LIGHTS if some of them are; TINTED_SHADOWS if surfaces let light through that are not in the moments of depth.
 
 struct Light {
   vec3 position_ws;
@@ -26,6 +26,21 @@ layout(std140, binding = BINDING_LIGHTS) uniform Lights {
 
 layout(binding = UNIT_SHADOW_MOMENTS) uniform sampler2DArray shadow_moments;  // mean and mean square of depth
 
+#ifdef TINTED_SHADOWS
+// What surfaces before the nearest opaque one let through, all together; a: the depth of the nearest of them.
+layout(binding = UNIT_SHADOW_TINT) uniform sampler2DArray shadow_tint;
+const float kTintBias = 2e-3;  // of depth: no surface tints its own light
+
+#define Visibility vec3
+Visibility tint_of_way(vec3 place, float depth) {
+  const vec4 tint = textureLod(shadow_tint, place, 0.0);
+  return depth > tint.a + kTintBias ? tint.rgb : vec3(1.0);
+}
+#else
+#define Visibility float
+Visibility tint_of_way(vec3 place, float depth) { return 1.0; }
+#endif
+
 // Chebyshev's inequality on the moments of depth: Donnelly and Lauritzen 2006, "Variance shadow maps".
 float chebyshev_upper_bound(vec2 moments, float depth) {
   const float variance = max(moments.y - moments.x * moments.x, shadow_least_variance);
@@ -44,7 +59,7 @@ vec3 cube_face(vec3 direction) {
 }
 
 // Share of the light that reaches a point, from the shadow map; 1 outside it.
-float light_visibility(Light light, vec3 position_ws) {
+Visibility light_visibility(Light light, vec3 position_ws) {
   const vec3 from_light = position_ws - light.position_ws;
   const vec4 clip = light.shadow_clip_from_world * vec4(position_ws, 1.0);
   vec2 ndc = clip.xy / clip.w;
@@ -58,8 +73,10 @@ float light_visibility(Light light, vec3 position_ws) {
 #endif
   const float depth = light.kind == 0u ? clip.z : length(from_light) / light.shadow_far_m;
   const bool outside = max(abs(ndc.x), abs(ndc.y)) > 1.0 || (light.kind == 2u && clip.w <= 0.0);
-  const vec2 moments = textureLod(shadow_moments, vec3(ndc * 0.5 + 0.5, layer), 0.0).rg;
-  return outside || light.first_shadow_layer < 0 ? 1.0 : chebyshev_upper_bound(moments, depth);
+  const vec3 place = vec3(ndc * 0.5 + 0.5, layer);
+  const vec2 moments = textureLod(shadow_moments, place, 0.0).rg;
+  const bool unknown = outside || light.first_shadow_layer < 0;
+  return unknown ? Visibility(1.0) : chebyshev_upper_bound(moments, depth) * tint_of_way(place, depth);
 }
 
 struct LightSample {

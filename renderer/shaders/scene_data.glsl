@@ -44,6 +44,11 @@ const uint kMaterialAlphaMask = 1u;
 const uint kMaterialAlphaBlend = 2u;
 const uint kMaterialDoubleSided = 4u;
 const uint kMaterialUnlit = 8u;
+const uint kMaterialClear = 16u;      // light goes straight on through it, see shaders/clear_surface.glsl
+const uint kMaterialClearWall = 32u;  // and without a volume behind it
+
+// Blended surfaces with a greater alpha throw shadows as opaque ones do, the others let light through.
+const float kOpaqueAlpha = 0.99;
 
 // Buffer textures of 128-bit texels: a hit's data is scattered, and a software device fetches a texel of four words as
 // fast as a single word of a storage buffer.

@@ -1,0 +1,108 @@
+// Light that passes clear panes and blended surfaces, by amounts worked out by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/image/test_scenes.h"
+
+namespace lightwell::testing {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+Settings thesis_settings(int bounces) {
+  Settings settings;
+  settings.bounces = bounces;
+  settings.samples = 64;
+  settings.indirect_size = 32;
+  return settings;
+}
+
+/// A thin wall that passes `color`, and reflects nothing unless `specular` is greater than 0.
+Material pane(glm::vec3 color, float specular = 0.0f) {
+  Material material;
+  material.base_color_factor = glm::vec4(color, 1.0f);
+  material.metallic_factor = 0.0f;
+  material.roughness_factor = 0.0f;
+  material.specular_factor = specular;
+  material.transmission_factor = 1.0f;
+  material.double_sided = true;
+  return material;
+}
+
+void expect_near(glm::vec3 seen, glm::vec3 expected, float share) {
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(seen[c], expected[c], std::max(share * expected[c], 1e-6f)) << "channel " << c;
+}
+
+/// A Lambert floor under a level pane at half a metre.
+SceneMaker floor_under(const Material& material, float albedo) {
+  SceneMaker maker;
+  maker.quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, maker.material(lambert(glm::vec3(albedo))));
+  maker.quad({-2, 0.5f, -2}, {0, 0, 4}, {4, 0, 0}, maker.material(material));
+  return maker;
+}
+
+const glm::vec3 kTint(0.9f, 0.5f, 0.2f);
+const PlacedCamera kUnderThePane = look_at({0.9f, 0.3f, 0.0f}, {0, 0, 0}, 0.3f);
+
+TEST(TintedShadows, ASunThroughAPane) {
+  SceneMaker maker = floor_under(pane(kTint), 0.5f);
+  maker.directional({0.3f, -1, 0.1f}, 10.0f);
+  const float cosine = 1.0f / std::sqrt(1.1f);
+  expect_near(render(maker.take(), kUnderThePane, thesis_settings(0)).center(), kTint * (0.5f / kPi * 10.0f * cosine),
+              0.01f);
+}
+
+TEST(TintedShadows, ALampThroughTwoPanesThatReflect) {
+  SceneMaker maker = floor_under(pane(kTint, 1.0f), 0.5f);
+  maker.quad({-2, 0.7f, -2}, {0, 0, 4}, {4, 0, 0}, maker.material(pane({0.5f, 0.6f, 0.7f}, 1.0f)));
+  maker.point({1.0f, 1.0f, 0.0f}, 4.0f);
+  const float cosine = std::sqrt(0.5f), passed = 1.0f - (0.04f + 0.96f * std::pow(1.0f - cosine, 5.0f));
+  const glm::vec3 irradiance = glm::vec3(4.0f / 2.0f * cosine) * kTint * glm::vec3(0.5f, 0.6f, 0.7f) * passed * passed;
+  expect_near(render(maker.take(), kUnderThePane, thesis_settings(0), {33, 33}).center(), 0.5f / kPi * irradiance,
+              0.01f);
+}
+
+TEST(TintedShadows, WhatLiesBeforeThePaneIsNotTinted) {
+  SceneMaker maker = floor_under(pane(kTint), 0.5f);
+  maker.quad({-2, 0.8f, -2}, {0, 0, 1.9f}, {4, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  maker.directional({0, -1, 0}, 10.0f);
+  const Pixels pixels = render(maker.take(), look_at({0, 2, -1}, {0, 0.8f, -1}, 0.3f), thesis_settings(0));
+  expect_near(pixels.center(), glm::vec3(5.0f / kPi), 0.01f);
+}
+
+// A slab of one metre whose half is below the floor: the light is absorbed along the half that it passes.
+TEST(TintedShadows, AVolumeAbsorbsUpToWhatStandsInIt) {
+  SceneMaker maker;
+  maker.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  Material water = pane(glm::vec3(1.0f), 1.0f);
+  water.double_sided = false;
+  water.ior = 1.33f;
+  water.thickness_factor = 1.0f;
+  water.attenuation_distance = 0.5f;
+  water.attenuation_color = kTint;
+  const int body = maker.material(water);
+  maker.quad({-1, 0.5f, -1}, {0, 0, 2}, {2, 0, 0}, body);
+  maker.quad({-1, -0.5f, -1}, {2, 0, 0}, {0, 0, 2}, body);
+  maker.directional({0, -1, 0}, 10.0f);
+  const float f0 = 0.33f * 0.33f / (2.33f * 2.33f);
+  const Pixels pixels = render(maker.take(), kUnderThePane, thesis_settings(0));
+  expect_near(pixels.center(), kTint * (5.0f / kPi * (1.0f - f0)), 0.01f);
+}
+
+TEST(TintedShadows, ABlendedSurfaceTakesItsCoverage) {
+  Material half = lambert(glm::vec3(0.8f, 0.1f, 0.1f));
+  half.alpha_mode = AlphaMode::kBlend;
+  half.base_color_factor.a = 0.25f;
+  half.double_sided = true;
+  SceneMaker maker = floor_under(half, 0.5f);
+  maker.directional({0.3f, -1, 0.1f}, 10.0f);
+  const float cosine = 1.0f / std::sqrt(1.1f);
+  expect_near(render(maker.take(), kUnderThePane, thesis_settings(0)).center(),
+              glm::vec3(0.75f * 0.5f / kPi * 10.0f * cosine), 0.01f);
+}
+
+}  // namespace
+}  // namespace lightwell::testing
