@@ -10,8 +10,9 @@ namespace {
 // Records of the occlusion map at once, and candidates of patches: 32 to 96 MiB on the device, whatever the settings.
 constexpr std::uint32_t kMostRecords = 1u << 21, kMostCandidates = 1u << 22;
 
-std::uint32_t directions_per_batch(const IndirectMapGrid& grid, const Settings& settings) {
-  const std::uint32_t by_records = kMostRecords / grid.most_slots();
+// Clear surfaces take four times as much for each record.
+std::uint32_t directions_per_batch(const IndirectMapGrid& grid, const Settings& settings, bool clear_surfaces) {
+  const std::uint32_t by_records = (clear_surfaces ? kMostRecords / 4 : kMostRecords) / grid.most_slots();
   const std::uint32_t by_candidates =
       kMostCandidates / (most_patches(grid, settings) * static_cast<std::uint32_t>(settings.triangle_groups));
   return std::clamp(std::min(by_records, by_candidates), 1u, static_cast<std::uint32_t>(settings.samples));
@@ -40,6 +41,7 @@ ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       active_blocks_pass_(shaders),
       patches_pass_(shaders, buffers),
       directions_pass_(shaders, buffers),
+      clear_hits_pass_(shaders, buffers),
       hit_light_pass_(shaders),
       gather_pass_(shaders),
       filter_pass_(shaders),
@@ -69,7 +71,8 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
                            ShadowMapsPass::layers_for(frame.pose));
   compose_pass_.resize(g_buffer_pass_.g_buffer().depth);
-  const std::uint32_t batch = directions_per_batch(grid, frame.settings);
+  const std::uint32_t batch = directions_per_batch(grid, frame.settings, frame.scene.has_clear());
+  if (frame.scene.has_clear()) clear_hits_pass_.resize(grid.most_slots() * batch);
   active_blocks_pass_.resize(grid);
   patches_pass_.resize(grid, frame.settings);
   const std::uint32_t most_rays = most_patches(grid, frame.settings) * batch;
@@ -128,6 +131,12 @@ Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buff
                                   std::min(batch, samples - first), seed);
   frame.timer.mark("directions");
   trace(frame, *traced_);
+  occlusion_.cleared_texels = nullptr;
+  if (frame.scene.has_clear()) {
+    const OcclusionRays rays{*traced_, *patches_, active_blocks_->slots()};
+    frame.rays += clear_hits_pass_.run(frame.scene, frame.tracer, rays, occlusion_);
+    frame.timer.mark("clear surfaces");
+  }
   return *traced_;
 }
 
@@ -154,7 +163,7 @@ void ThesisMethod::trace(FrameContext& frame, const Directions& directions) {
 void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                  const IndirectMapGrid& grid, int bounce) {
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
-  const std::uint32_t batch = directions_per_batch(grid, frame.settings);
+  const std::uint32_t batch = directions_per_batch(grid, frame.settings, frame.scene.has_clear());
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
   for (std::uint32_t first = 0; first < samples; first += batch) {
     const OcclusionRays rays{trace_batch(frame, g_buffer, grid, first, batch), *patches_, active_blocks_->slots()};

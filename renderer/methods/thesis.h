@@ -3,6 +3,7 @@
 
 #include "renderer/methods/frame_context.h"
 #include "renderer/passes/active_blocks.h"
+#include "renderer/passes/clear_hits.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/directions.h"
 #include "renderer/passes/g_buffer.h"
@@ -37,6 +38,7 @@ class ThesisMethod {
   ActiveBlocksPass active_blocks_pass_;
   PatchesPass patches_pass_;
   DirectionsPass directions_pass_;
+  ClearHitsPass clear_hits_pass_;
   HitLightPass hit_light_pass_;
   GatherPass gather_pass_;
   IndirectFilterPass filter_pass_;

@@ -23,8 +23,17 @@ layout(rgba32ui, binding = 2) writeonly uniform uimage2D guide;  // what the fil
 uniform uint direction_count;  // in this batch
 uniform uint total_directions; // in all batches
 uniform int first_batch;
-uniform float environment_share;  // 1 in the bounce to which misses bring the environment, else 0
+uniform float environment_share;  // 1 in the bounce to which misses bring light from beyond the scene, else 0
 uniform uint patch_count;
+
+#ifdef CLEAR_SURFACES
+layout(binding = UNIT_CLEARED) uniform samplerBuffer cleared;  // see clear_hits.comp
+vec3 light_of_miss(int record, vec3 environment) {
+  return environment * texelFetch(cleared, 2 * record).rgb + texelFetch(cleared, 2 * record + 1).rgb;
+}
+#else
+vec3 light_of_miss(int record, vec3 environment) { return environment; }
+#endif
 
 #ifdef PATCHES
 layout(binding = UNIT_PIXEL_ORIGINS) uniform usamplerBuffer pixel_origins;
@@ -64,8 +73,8 @@ vec3 light_from(Receiver receiver, int record, vec4 direction, float t) {
 }
 #else
 vec3 light_from(Receiver receiver, int record, vec4 direction, float t) {
-  const vec3 environment = environment_radiance(direction.xyz) * environment_share;
-  return weight_of(receiver, direction) * (t >= 0.0 ? texelFetch(arriving, record).rgb : environment);
+  const vec3 beyond = light_of_miss(record, environment_radiance(direction.xyz)) * environment_share;
+  return weight_of(receiver, direction) * (t >= 0.0 ? texelFetch(arriving, record).rgb : beyond);
 }
 #endif
 

@@ -41,12 +41,14 @@ void GatherPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const In
   rays.patches.origin_texels.bind(UNIT_PIXEL_ORIGINS);
   occlusion.arriving_texels.bind(UNIT_ARRIVING);
   occlusion.hit_texels.bind(UNIT_HITS);
+  occlusion.bind_cleared();
   map.image.bind_image(0, GL_READ_WRITE);
   occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
   guide_.bind_image(2, GL_WRITE_ONLY);
   const gl::Defines kind =
       gathering.literal ? gl::Defines{"LITERAL 1"} : gl::joined(scene.environment_defines(), scene.brdf_defines());
-  Variant& variant = variants_.with(gl::joined(kind, rays.patches.defines()));
+  Variant& variant = variants_.with(gl::joined(gl::joined(kind, rays.patches.defines()),
+                                               gathering.literal ? gl::Defines{} : occlusion.clear_defines()));
   variant.grid.set(grid, blocks.slots());
   variant.direction_count = rays.directions.count;
   variant.patch_count = rays.patches.count;

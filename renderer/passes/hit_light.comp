@@ -22,6 +22,22 @@ layout(local_size_x = 64) in;
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit
 layout(std430, binding = BINDING_ARRIVING) writeonly buffer Arriving { vec4 arriving[]; };  // radiance
 
+#ifdef CLEAR_SURFACES
+layout(binding = UNIT_CLEARED) uniform samplerBuffer cleared;  // see clear_hits.comp
+
+// Of the hit's light what clear surfaces before it pass, with their own. Algorithm 2 weights no light but the hit's.
+vec3 through_clear_surfaces(uint record, vec3 light) {
+  const vec3 passed = light * texelFetch(cleared, int(2u * record)).rgb;
+#ifdef LITERAL
+  return passed;
+#else
+  return passed + texelFetch(cleared, int(2u * record + 1u)).rgb;
+#endif
+}
+#else
+vec3 through_clear_surfaces(uint record, vec3 light) { return light; }
+#endif
+
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 
 #ifdef LITERAL
@@ -55,5 +71,8 @@ void main() {
   const Hit hit = Hit(uintBitsToFloat(texelFetch(hit_words, first).x), texelFetch(hit_words, first + 1).x,
                       texelFetch(hit_words, first + 2).x, uintBitsToFloat(texelFetch(hit_words, first + 3).x),
                       uintBitsToFloat(texelFetch(hit_words, first + 4).x));
-  arriving[index] = vec4(light_of_hit(occlusion_ray(index), hit), 0.0);
+#ifdef CLEAR_SURFACES
+  if (hit.t < 0.0) return;  // nothing is behind the clear surfaces that the list names
+#endif
+  arriving[index] = vec4(through_clear_surfaces(index, light_of_hit(occlusion_ray(index), hit)), 0.0);
 }

@@ -18,6 +18,14 @@ void OcclusionMap::resize(std::uint32_t most_records) {
   arriving_texels.attach(arriving);
 }
 
+void OcclusionMap::bind_cleared() const {
+  if (cleared_texels) cleared_texels->bind(UNIT_CLEARED);
+}
+
+gl::Defines OcclusionMap::clear_defines() const {
+  return cleared_texels ? gl::Defines{"CLEAR_SURFACES 1"} : gl::Defines{};
+}
+
 HitLightPass::HitLightPass(gl::ShaderLibrary& shaders)
     : from_lights_(
           [&shaders](const gl::Defines& defines) { return shaders.compute("passes/hit_light.comp", defines); }),
@@ -33,6 +41,7 @@ void HitLightPass::dispatch(Variant& variant, const OcclusionRays& rays, const O
   occlusion.list.dispatch.bind_storage(BINDING_HIT_DISPATCH);
   occlusion.list.texels.bind(UNIT_HIT_LIST);
   occlusion.arriving.bind_storage(BINDING_ARRIVING);
+  occlusion.bind_cleared();
   variant.slot_count = rays.slots;
   variant.patch_count = rays.patches.count;
   variant.program->dispatch_indirect(occlusion.list.dispatch);
@@ -43,7 +52,7 @@ void HitLightPass::run(const DeviceScene& scene, const OcclusionRays& rays, cons
                        const ShadowMaps& shadows, bool literal) {
   shadows.bind();
   gl::Defines defines = gl::joined(gl::joined(scene.texture_defines(), scene.light_defines()), scene.brdf_defines());
-  defines = gl::joined(defines, rays.patches.defines());
+  defines = gl::joined(gl::joined(defines, rays.patches.defines()), occlusion.clear_defines());
   dispatch(from_lights_.with(literal ? gl::joined(defines, kLiteral) : defines), rays, occlusion);
 }
 
@@ -51,7 +60,7 @@ void HitLightPass::run_from_screen(const GBuffer& g_buffer, const OcclusionRays&
                                    const gl::Texture& previous_bounce) {
   g_buffer.bind();
   previous_bounce.bind(UNIT_IMAGE_A);
-  dispatch(from_screen_.with(rays.patches.defines()), rays, occlusion);
+  dispatch(from_screen_.with(gl::joined(rays.patches.defines(), occlusion.clear_defines())), rays, occlusion);
 }
 
 }  // namespace lightwell

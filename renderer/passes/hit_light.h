@@ -22,6 +22,11 @@ struct OcclusionMap {
   HitList list;
   gl::Buffer arriving{"arriving light", 0};  // vec4: radiance that leaves the hits towards the pixels
   gl::BufferTexture arriving_texels{"arriving light", GL_RGBA32F};
+  const gl::BufferTexture* cleared_texels = nullptr;  // of ClearHitsPass, where the scene has clear surfaces
+
+  /// Binds what the shaders of the defines read.
+  void bind_cleared() const;
+  gl::Defines clear_defines() const;
 };
 
 /// The rays whose hits an OcclusionMap holds.

@@ -31,9 +31,17 @@ vec3 screen_radiance(vec3 position_ws) {
   return demodulated.rgb / max(demodulated.a, 1e-3) * directional_albedo(seen.brdf, cos_out);
 }
 
+#ifdef CLEAR_SURFACES
+layout(binding = UNIT_CLEARED) uniform samplerBuffer cleared;  // see clear_hits.comp
+vec3 through_clear_surfaces(uint record, vec3 light) { return light * texelFetch(cleared, int(2u * record)).rgb; }
+#else
+vec3 through_clear_surfaces(uint record, vec3 light) { return light; }
+#endif
+
 void main() {
   if (gl_GlobalInvocationID.x >= hit_count) return;
   const uint index = hit_ray(gl_GlobalInvocationID.x);
   const Ray ray = occlusion_ray(index);
-  arriving[index] = vec4(screen_radiance(ray.origin_ws + hits[index].t * ray.direction_ws), 0.0);
+  const vec3 light = screen_radiance(ray.origin_ws + hits[index].t * ray.direction_ws);
+  arriving[index] = vec4(through_clear_surfaces(index, light), 0.0);
 }

@@ -104,5 +104,61 @@ TEST(TintedShadows, ABlendedSurfaceTakesItsCoverage) {
               glm::vec3(0.75f * 0.5f / kPi * 10.0f * cosine), 0.01f);
 }
 
+// A hemisphere of light above the pane: the floor gets pi times what the pane passes, averaged over directions.
+TEST(ThroughPanes, RaysToTheSkyAreTinted) {
+  SceneMaker maker;
+  maker.quad({-0.01f, 0, -0.01f}, {0, 0, 0.02f}, {0.02f, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  maker.quad({-400, 0.5f, -400}, {0, 0, 800}, {800, 0, 0}, maker.material(pane(kTint)));
+  add_white_sky(maker.scene());
+  const PlacedCamera camera = look_at({0.02f, 0.1f, 0.0f}, {0, 0, 0}, 0.1f);
+  expect_near(render(maker.take(), camera, thesis_settings(1), {9, 9}).center(), 0.5f * kTint, 0.02f);
+}
+
+// Two panes, and behind them a ceiling that emits: hits behind clear surfaces, as many as there are.
+TEST(ThroughPanes, RaysToALampPassEveryPane) {
+  SceneMaker maker;
+  maker.quad({-0.01f, 0, -0.01f}, {0, 0, 0.02f}, {0.02f, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  maker.quad({-400, 0.5f, -400}, {0, 0, 800}, {800, 0, 0}, maker.material(pane(kTint)));
+  maker.quad({-400, 0.7f, -400}, {0, 0, 800}, {800, 0, 0}, maker.material(pane({0.5f, 0.6f, 0.7f})));
+  maker.quad({-400, 0.9f, -400}, {800, 0, 0}, {0, 0, 800}, maker.material(lambert(glm::vec3(0), glm::vec3(3.0f))));
+  const PlacedCamera camera = look_at({0.02f, 0.1f, 0.0f}, {0, 0, 0}, 0.1f);
+  Settings settings = thesis_settings(1);
+  for (const int patch : {1, 4}) {
+    settings.patch = patch;
+    expect_near(render(maker.scene(), camera, settings, {9, 9}).center(), 1.5f * kTint * glm::vec3(0.5f, 0.6f, 0.7f),
+                0.02f);
+  }
+}
+
+// What a ray meets first is a pane that emits: its own light and that of the ceiling behind it.
+TEST(ThroughPanes, APaneAddsItsOwnLight) {
+  SceneMaker maker;
+  maker.quad({-0.01f, 0, -0.01f}, {0, 0, 0.02f}, {0.02f, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  Material shining = pane(kTint);
+  shining.emissive_factor = glm::vec3(0.25f);
+  maker.quad({-400, 0.5f, -400}, {0, 0, 800}, {800, 0, 0}, maker.material(shining));
+  maker.quad({-400, 0.9f, -400}, {800, 0, 0}, {0, 0, 800}, maker.material(lambert(glm::vec3(0), glm::vec3(3.0f))));
+  const PlacedCamera camera = look_at({0.02f, 0.1f, 0.0f}, {0, 0, 0}, 0.1f);
+  expect_near(render(maker.take(), camera, thesis_settings(1), {9, 9}).center(),
+              0.5f * (3.0f * kTint + glm::vec3(0.25f)), 0.02f);
+}
+
+// From within a volume of half a metre: absorbed on the way to its surface. Over directions by the cosine, the mean of
+// exp(-a / cos) is 2 E3(a), an exponential integral; E3(1) = 0.109692.
+TEST(ThroughPanes, RaysAreAbsorbedFromWhereTheyBegin) {
+  SceneMaker maker;
+  maker.quad({-0.01f, 0, -0.01f}, {0, 0, 0.02f}, {0.02f, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  Material water = pane(glm::vec3(1.0f));
+  water.thickness_factor = 1.0f;
+  water.attenuation_distance = 0.5f;
+  water.attenuation_color = glm::vec3(std::exp(-1.0f));
+  maker.quad({-400, 0.5f, -400}, {0, 0, 800}, {800, 0, 0}, maker.material(water));
+  add_white_sky(maker.scene());
+  const PlacedCamera camera = look_at({0.02f, 0.1f, 0.0f}, {0, 0, 0}, 0.1f);
+  Settings settings = thesis_settings(1);
+  settings.samples = 1024;
+  expect_near(render(maker.take(), camera, settings, {9, 9}).center(), glm::vec3(2.0f * 0.109692f * 0.5f), 0.03f);
+}
+
 }  // namespace
 }  // namespace lightwell::testing

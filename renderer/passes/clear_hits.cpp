@@ -1,0 +1,74 @@
+#include "renderer/passes/clear_hits.h"
+
+#include <cstring>
+
+#include "renderer/passes/bindings.glsl"
+
+namespace lightwell {
+
+namespace {
+
+constexpr int kMostClearSurfaces = 8;  // as in shaders/clear_surface.glsl
+
+}  // namespace
+
+ClearHitsPass::ClearHitsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
+    : variants_([&shaders](const gl::Defines& defines) { return shaders.compute("passes/clear_hits.comp", defines); }),
+      rays_("rays through clear surfaces", 0, buffers),
+      hits_("hits behind clear surfaces", 0, buffers),
+      cleared_("clear surfaces before hits", 0),
+      count_("count of rays through clear surfaces", sizeof(std::uint32_t), gl::BufferUse::kHostVisible) {}
+
+void ClearHitsPass::resize(std::uint32_t most_records) {
+  rays_.reserve(std::uint64_t{most_records} * sizeof(Ray));
+  hits_.reserve(std::uint64_t{most_records} * sizeof(Hit) + 16);  // the last record is read as two wide texels
+  cleared_.reserve(std::uint64_t{most_records} * 2 * sizeof(glm::vec4));
+  ray_texels_.attach(rays_);
+  hit_texels_.attach(hits_);
+  cleared_texels_.attach(cleared_);
+}
+
+std::uint64_t ClearHitsPass::run(const DeviceScene& scene, Tracer& tracer, const OcclusionRays& rays,
+                                 OcclusionMap& occlusion) {
+  const gl::Defines defines =
+      gl::joined(gl::joined(scene.texture_defines(), scene.light_defines()), scene.brdf_defines());
+  const std::uint32_t records = rays.slots * rays.directions.count;
+  Variant& first = variants_.with(gl::joined(gl::joined(defines, rays.patches.defines()), {"FIRST 1"}));
+  Variant& next = variants_.with(defines);
+  rays.directions.ray_texels.bind(UNIT_RAYS);
+  std::uint64_t traced = 0;
+  std::uint32_t onward = step(first, rays, occlusion, true);
+  ray_texels_.bind(UNIT_RAYS);
+  for (int surface = 1; onward > 0; ++surface) {
+    tracer.closest_hit(rays_, records, hits_);
+    traced += onward;
+    onward = step(next, rays, occlusion, surface < kMostClearSurfaces);
+  }
+  occlusion.cleared_texels = &cleared_texels_;
+  return traced;
+}
+
+// The number of rays that go on.
+std::uint32_t ClearHitsPass::step(Variant& variant, const OcclusionRays& rays, const OcclusionMap& occlusion,
+                                  bool goes_on) {
+  count_.clear();
+  rays.directions.direction_texels.bind(UNIT_DIRECTIONS);
+  rays.patches.origin_texels.bind(UNIT_PIXEL_ORIGINS);
+  hit_texels_.bind(UNIT_HITS);
+  occlusion.hits.bind_storage(BINDING_HITS);
+  rays_.bind_storage(BINDING_RAYS);
+  cleared_.bind_storage(BINDING_ARRIVING);
+  count_.bind_storage(BINDING_OUTPUT);
+  variant.slot_count = rays.slots;
+  variant.patch_count = rays.patches.count;
+  variant.record_count = rays.slots * rays.directions.count;
+  variant.goes_on = goes_on ? 1 : 0;
+  variant.program->dispatch(rays.slots * rays.directions.count);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  gl::wait_for_device();
+  std::uint32_t onward = 0;
+  std::memcpy(&onward, count_.host(), sizeof onward);
+  return onward;
+}
+
+}  // namespace lightwell
