@@ -50,20 +50,64 @@ ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       compose_pass_(shaders),
       occlusion_(buffers),
       candidates_("candidates", 0, buffers),
-      candidates_of_group_("candidates of a group", 0, buffers) {}
+      candidates_of_group_("candidates of a group", 0, buffers),
+      clear_g_buffer_pass_(shaders),
+      clear_layers_pass_(shaders),
+      clear_compose_pass_(shaders) {}
 
 const Picture& ThesisMethod::render(FrameContext& frame) {
   const IndirectMapGrid grid = make_grid(frame);
   resize(frame, grid);
-  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number);
+  const bool clear = frame.scene.has_clear();
+  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number, nullptr,
+                                               clear ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
   frame.timer.mark("g-buffer");
   const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose);
   frame.timer.mark("shadow maps");
   const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
+  const bool layered = clear && shows_clear_surfaces(frame.settings.view);
   const Picture& picture = compose_pass_.run(frame.scene, g_buffer, shadows, indirect, gather_pass_, map_view_pass_,
-                                             frame.settings, frame.accumulate);
+                                             frame.settings, frame.accumulate && !layered);
+  frame.timer.mark("compose");
+  return layered ? clear_surfaces_over(picture, frame, g_buffer, shadows, grid) : picture;
+}
+
+// The nearest clear surface of each pixel, with the light it reflects, over what is behind it.
+const Picture& ThesisMethod::clear_surfaces_over(const Picture& behind, FrameContext& frame, const GBuffer& g_buffer,
+                                                 const ShadowMaps& shadows, const IndirectMapGrid& grid) {
+  clear_layers_pass_.resize(frame.size_px);
+  clear_g_buffer_pass_.resize(frame.size_px);
+  const gl::Texture& layers = clear_layers_pass_.run(frame.scene, g_buffer);
+  const GBuffer& front =
+      clear_g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number, GBufferLayer::kClearAlone);
+  frame.timer.mark("g-buffer");
+  const IndirectMap& indirect = reflected_by_clear(frame, front, g_buffer, shadows, grid);
+  clear_compose_pass_.resize(front.depth);
+  const Picture& picture = clear_compose_pass_.run_over({behind, layers}, frame.scene, front, shadows, indirect,
+                                                        gather_pass_, frame.settings, frame.accumulate);
   frame.timer.mark("compose");
   return picture;
+}
+
+// The first bounce as elsewhere, all further ones at once from what the camera sees behind the clear surfaces.
+const IndirectMap& ThesisMethod::reflected_by_clear(FrameContext& frame, const GBuffer& front, const GBuffer& g_buffer,
+                                                    const ShadowMaps& shadows, const IndirectMapGrid& grid) {
+  const bool alone = frame.settings.view == ViewKind::kBounce;
+  all_bounces_.image.clear(glm::vec4(0.0f));
+  if (frame.settings.bounces == 0) return all_bounces_;
+  traced_ = nullptr;
+  find_patches(frame, front, grid);
+  const auto add = [&](const ScreenLight* screen, bool first) {
+    gather_bounce(frame, front, shadows, grid, screen);
+    if (frame.settings.denoise) filter_pass_.run(gather_pass_.guide(), bounce_);
+    add_maps_pass_.run(bounce_, all_bounces_, first);
+  };
+  const ScreenLight screen{g_buffer, seen_light_.image};
+  const int bounces = alone ? frame.settings.view_index : frame.settings.bounces;
+  if (!alone || bounces == 1) add(nullptr, true);
+  if (bounces > 1) add(&screen, alone);
+  frame.timer.mark("gather");
+  return all_bounces_;
 }
 
 void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid) {
@@ -87,6 +131,7 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   if (all_bounces_.image && all_bounces_.image.size_px() == grid.map_size_px) return;
   bounce_ = make_indirect_map(grid.map_size_px);
   previous_bounce_ = make_indirect_map(grid.map_size_px);
+  seen_light_ = make_indirect_map(grid.map_size_px);
   all_bounces_ = make_indirect_map(grid.map_size_px);
 }
 
@@ -99,13 +144,17 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
   traced_ = nullptr;
   find_patches(frame, g_buffer, grid);
   for (int bounce = 1; bounce <= frame.settings.bounces; ++bounce) {
-    gather_bounce(frame, g_buffer, shadows, grid, bounce);
+    const ScreenLight screen{g_buffer, previous_bounce_.image};
+    gather_bounce(frame, g_buffer, shadows, grid, bounce == 1 ? nullptr : &screen);
     if (frame.settings.denoise) {
       filter_pass_.run(gather_pass_.guide(), bounce_);
       frame.timer.mark("filter");
     }
     const bool alone = frame.settings.view == ViewKind::kBounce;
     if (!alone || bounce == frame.settings.view_index) add_maps_pass_.run(bounce_, all_bounces_, alone || bounce == 1);
+    // What clear surfaces reflect of it is one bounce more.
+    if (frame.scene.has_clear() && (alone ? bounce + 1 == frame.settings.view_index : bounce < frame.settings.bounces))
+      add_maps_pass_.run(bounce_, seen_light_, alone || bounce == 1);
     std::swap(bounce_, previous_bounce_);
     frame.timer.mark("gather");
   }
@@ -161,21 +210,22 @@ void ThesisMethod::trace(FrameContext& frame, const Directions& directions) {
 }
 
 void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
-                                 const IndirectMapGrid& grid, int bounce) {
+                                 const IndirectMapGrid& grid, const ScreenLight* screen) {
+  const bool first_bounce = screen == nullptr;
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
   const std::uint32_t batch = directions_per_batch(grid, frame.settings, frame.scene.has_clear());
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
   for (std::uint32_t first = 0; first < samples; first += batch) {
     const OcclusionRays rays{trace_batch(frame, g_buffer, grid, first, batch), *patches_, active_blocks_->slots()};
-    if (bounce == 1 && MapViewPass::is_of_batch(frame.settings, first, rays.directions.count))
+    if (first_bounce && MapViewPass::is_of_batch(frame.settings, first, rays.directions.count))
       map_view_pass_.run(grid, *active_blocks_, rays, occlusion_, candidates_, frame.settings);
-    if (bounce == 1)
+    if (first_bounce)
       hit_light_pass_.run(frame.scene, rays, occlusion_, shadows, literal);
     else
-      hit_light_pass_.run_from_screen(g_buffer, rays, occlusion_, previous_bounce_.image);
-    frame.timer.mark(bounce == 1 ? "light of hits" : "light from screen");
+      hit_light_pass_.run_from_screen(screen->g_buffer, rays, occlusion_, screen->map);
+    frame.timer.mark(first_bounce ? "light of hits" : "light from screen");
     gather_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, rays, occlusion_,
-                     {samples, literal, bounce == 1 && !literal}, bounce_);
+                     {samples, literal, first_bounce && !literal}, bounce_);
     frame.timer.mark("gather");
   }
 }

@@ -4,6 +4,7 @@
 #include "renderer/methods/frame_context.h"
 #include "renderer/passes/active_blocks.h"
 #include "renderer/passes/clear_hits.h"
+#include "renderer/passes/clear_layers.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/directions.h"
 #include "renderer/passes/g_buffer.h"
@@ -23,6 +24,10 @@ class ThesisMethod {
   const Picture& render(FrameContext& frame);
 
  private:
+  struct ScreenLight {  // where bounces after the first find their light
+    const GBuffer& g_buffer;
+    const gl::Texture& map;
+  };
   void resize(const FrameContext& frame, const IndirectMapGrid& grid);
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);
@@ -31,7 +36,11 @@ class ThesisMethod {
                           std::uint32_t first, std::uint32_t batch);
   void trace(FrameContext& frame, const Directions& directions);
   void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
-                     const IndirectMapGrid& grid, int bounce);
+                     const IndirectMapGrid& grid, const ScreenLight* screen);
+  const Picture& clear_surfaces_over(const Picture& behind, FrameContext& frame, const GBuffer& g_buffer,
+                                     const ShadowMaps& shadows, const IndirectMapGrid& grid);
+  const IndirectMap& reflected_by_clear(FrameContext& frame, const GBuffer& front, const GBuffer& g_buffer,
+                                        const ShadowMaps& shadows, const IndirectMapGrid& grid);
 
   GBufferPass g_buffer_pass_;
   ShadowMapsPass shadow_maps_pass_;
@@ -48,6 +57,10 @@ class ThesisMethod {
   OcclusionMap occlusion_;
   gl::Buffer candidates_, candidates_of_group_;  // Hit
   IndirectMap bounce_, previous_bounce_, all_bounces_;
+  GBufferPass clear_g_buffer_pass_;  // of scenes with clear surfaces, as the rest of these
+  ClearLayersPass clear_layers_pass_;
+  ComposePass clear_compose_pass_;
+  IndirectMap seen_light_;                       // what bounces light clear surfaces
   const ActiveBlocks* active_blocks_ = nullptr;  // of this frame
   const Patches* patches_ = nullptr;             // of this frame
   Directions* traced_ = nullptr;                 // the batch whose hits are in occlusion_; null: none of this frame

@@ -65,6 +65,19 @@ struct DeviceExposure {
 
 }  // namespace
 
+bool shows_clear_surfaces(ViewKind view) {
+  switch (view) {
+    case ViewKind::kAlbedo:
+    case ViewKind::kNormal:
+    case ViewKind::kDepth:
+    case ViewKind::kPosition:
+    case ViewKind::kNormalDepth:
+      return true;
+    default:
+      return is_of_light(view);
+  }
+}
+
 EnvironmentBlock::EnvironmentBlock() : block_("environment", sizeof(DeviceEnvironment)) {}
 
 void EnvironmentBlock::set(const Environment& environment, const std::optional<glm::vec3>& background) {
@@ -117,7 +130,24 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   gl::Defines defines = is_of_light(settings.view) ? gl::joined(scene.light_defines(), scene.brdf_defines())
                                                    : gl::Defines{"AUXILIARY_VIEWS 1"};
   if (settings.denoise && is_of_light(settings.view)) defines.emplace_back("JOINT_UPSCALE 1");
-  return draw(scene, defines, settings, accumulate);
+  return draw(defines, scene.environment_defines(), settings, accumulate);
+}
+
+const Picture& ComposePass::run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
+                                     const ShadowMaps& shadows, const IndirectMap& indirect, const GatherPass& gathered,
+                                     const Settings& settings, bool accumulate) {
+  const gl::Defines over{"OVER_BEHIND 1"};
+  g_buffer.bind();
+  shadows.bind();
+  indirect.image.bind(UNIT_IMAGE_B);
+  gathered.guide().bind(UNIT_GUIDE);
+  behind.picture.image.bind(UNIT_BEHIND);
+  behind.layers.bind(UNIT_CLEAR_LAYERS);
+  gl::Defines defines = is_of_light(settings.view)
+                            ? gl::joined(gl::joined(scene.light_defines(), scene.brdf_defines()), over)
+                            : gl::Defines{"AUXILIARY_VIEWS 1"};
+  if (settings.denoise && is_of_light(settings.view)) defines.emplace_back("JOINT_UPSCALE 1");
+  return draw(defines, over, settings, accumulate);
 }
 
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
@@ -127,10 +157,11 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   direct.visible_texels.bind(UNIT_PUNCTUAL_VISIBLE);
   indirect.image->bind(UNIT_IMAGE_B);
   indirect.guide->bind(UNIT_GUIDE);
-  return draw(scene, gl::joined(scene.brdf_defines(), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"}), settings, accumulate);
+  return draw(gl::joined(scene.brdf_defines(), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"}), scene.environment_defines(),
+              settings, accumulate);
 }
 
-const Picture& ComposePass::draw(const DeviceScene& scene, const gl::Defines& surface_defines, const Settings& settings,
+const Picture& ComposePass::draw(const gl::Defines& surfaces, const gl::Defines& background, const Settings& settings,
                                  bool accumulate) {
   if (!accumulate) picture_.accumulated = 0;
   framebuffer_.bind();
@@ -141,8 +172,8 @@ const Picture& ComposePass::draw(const DeviceScene& scene, const gl::Defines& su
   }
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);  // the G-buffer's depth is read by the shaders, too
-  draw_surfaces(surface_defines, settings);
-  draw_background(scene, settings);
+  draw_surfaces(surfaces, settings);
+  draw_background(background, settings);
   glDepthMask(GL_TRUE);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
@@ -159,9 +190,10 @@ void ComposePass::draw_surfaces(const gl::Defines& defines, const Settings& sett
   full_screen_.draw_full_screen();
 }
 
-void ComposePass::draw_background(const DeviceScene& scene, const Settings& settings) {
-  Background& background = background_.with(scene.environment_defines());
+void ComposePass::draw_background(const gl::Defines& defines, const Settings& settings) {
+  Background& background = background_.with(defines);
   background.shown = settings.view == ViewKind::kFinal || settings.view == ViewKind::kDirect ? 1 : 0;
+  background.tinted = is_of_light(settings.view) ? 1 : 0;
   background.program->use();
   glDepthFunc(GL_EQUAL);
   full_screen_.draw_full_screen();

@@ -41,6 +41,19 @@ vec3 direct_light(ivec2 pixel, GBufferPoint point) {
 }
 #endif
 
+#ifdef OVER_BEHIND
+layout(binding = UNIT_BEHIND) uniform sampler2D behind;              // the picture without clear surfaces
+layout(binding = UNIT_CLEAR_LAYERS) uniform sampler2D clear_layers;  // see clear_layers.frag
+
+vec4 over_behind(ivec2 pixel, vec4 own) {
+  const vec3 passed = exp(-max(texelFetch(clear_layers, pixel, 0).rgb, 0.0));
+  const vec4 there = texelFetch(behind, pixel, 0);
+  return own + vec4(passed * there.rgb, luminance(passed) * max(there.a - 1.0, 0.0));
+}
+#else
+vec4 over_behind(ivec2 pixel, vec4 own) { return own; }
+#endif
+
 #ifdef JOINT_UPSCALE
 layout(binding = UNIT_GUIDE) uniform usampler2D guide;  // see indirect_filter.comp
 
@@ -96,7 +109,7 @@ vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   const vec3 indirect = indirect_light(point, uv);
   const vec3 shown = direct * (view == VIEW_FINAL || view == VIEW_DIRECT ? 1.0 : 0.0) +
                      indirect * (view == VIEW_DIRECT ? 0.0 : 1.0);
-  return vec4(shown, 1.0 + luminance(direct + indirect));
+  return over_behind(pixel, vec4(shown, 1.0 + luminance(direct + indirect)));
 }
 #endif
 

@@ -34,6 +34,15 @@ class EnvironmentBlock {
   std::shared_ptr<const ImageHdr> uploaded_;
 };
 
+/// What clear surfaces are before.
+struct BehindClear {
+  const Picture& picture;
+  const gl::Texture& layers;  // of ClearLayersPass
+};
+
+/// Whether a view shows clear surfaces over what is behind them; the others are of what is behind alone.
+bool shows_clear_surfaces(ViewKind view);
+
 /// Direct and indirect light, or one of the views, into the picture.
 class ComposePass {
  public:
@@ -45,6 +54,10 @@ class ComposePass {
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMap& indirect, const GatherPass& gathered, const MapViewPass& map_view,
                      const Settings& settings, bool accumulate);
+  /// The same of the layer of clear surfaces, over the picture of what is behind them.
+  const Picture& run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
+                          const ShadowMaps& shadows, const IndirectMap& indirect, const GatherPass& gathered,
+                          const Settings& settings, bool accumulate);
   /// The same with direct light by traced shadow rays and a map that was scaled with its guide; a view of light.
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
                      const ReconstructedMap& indirect, const Settings& settings, bool accumulate);
@@ -56,15 +69,15 @@ class ComposePass {
     gl::ProgramPtr program;
     gl::Uniform<int> view;
   };
-  const Picture& draw(const DeviceScene& scene, const gl::Defines& surface_defines, const Settings& settings,
+  const Picture& draw(const gl::Defines& surfaces, const gl::Defines& background, const Settings& settings,
                       bool accumulate);
   void draw_surfaces(const gl::Defines& defines, const Settings& settings);
-  void draw_background(const DeviceScene& scene, const Settings& settings);
+  void draw_background(const gl::Defines& defines, const Settings& settings);
   gl::Variants<Variant> surfaces_;
   struct Background {
-    explicit Background(const gl::ProgramPtr& p) : program(p), shown(p, "shown") {}
+    explicit Background(const gl::ProgramPtr& p) : program(p), shown(p, "shown"), tinted(p, "tinted") {}
     gl::ProgramPtr program;
-    gl::Uniform<int> shown;
+    gl::Uniform<int> shown, tinted;
   };
   gl::Variants<Background> background_;
   Picture picture_;

@@ -4,6 +4,21 @@
 
 namespace lightwell {
 
+namespace {
+
+gl::Defines layer_defines(GBufferLayer layer) {
+  switch (layer) {
+    case GBufferLayer::kBehindClear:
+      return {"BEHIND_CLEAR 1"};
+    case GBufferLayer::kClearAlone:
+      return {"CLEAR_ALONE 1"};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
 void GBuffer::bind() const {
   surface.bind(UNIT_G_SURFACE);
   material.bind(UNIT_G_MATERIAL);
@@ -47,9 +62,10 @@ const gl::Framebuffer& GBufferPass::framebuffer_of(bool lobes, bool motion) {
   return framebuffer;
 }
 
-const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion) {
+const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion,
+                                GBufferLayer layer) {
   buffer_.has_motion = motion && motion->moving();
-  gl::Defines defines = gl::joined(scene.texture_defines(), scene.lobe_defines());
+  gl::Defines defines = gl::joined(gl::joined(scene.texture_defines(), scene.lobe_defines()), layer_defines(layer));
   if (buffer_.has_motion) {
     scene.feed_instances_before(motion->instances());
     motion->bind();

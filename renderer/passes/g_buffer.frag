@@ -1,3 +1,5 @@
+// BEHIND_CLEAR: without clear surfaces, as if they were not there. CLEAR_ALONE: these alone, where they are before the rest;
+// what they let through is in the other layer.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
@@ -39,11 +41,22 @@ layout(location = 3) out vec4 out_motion;
 
 uniform uint frame_seed;
 
+#ifdef CLEAR_ALONE
+layout(binding = UNIT_G_DEPTH) uniform sampler2D depth_behind;
+#endif
+
 // Coverage as a threshold that changes from pixel to pixel and frame to frame: the mean of many frames is the blend.
 float coverage_threshold() { return unit_interval(hash(uvec3(gl_FragCoord.xy, frame_seed))); }
 
 void main() {
   const Material material = fetch_material(material_index);
+#ifdef BEHIND_CLEAR
+  if ((material.flags & kMaterialClear) != 0u) discard;
+#endif
+#ifdef CLEAR_ALONE
+  if ((material.flags & kMaterialClear) == 0u) discard;
+  if (gl_FragCoord.z <= texelFetch(depth_behind, ivec2(gl_FragCoord.xy), 0).r) discard;
+#endif
   Attributes at;
   at.normal_ws = normalize(world_normal);
   at.tangent_ws = vec3(0.0);
@@ -86,6 +99,9 @@ void main() {
   const float f0 = max(lobes.f0_dielectric.r, max(lobes.f0_dielectric.g, lobes.f0_dielectric.b));
   out_material.y = packUnorm2x16(vec2(f0, lobes.specular_factor));
   out_lobes = unlit ? uvec4(0u) : pack_g_lobes(lobes, behind);
+#ifdef CLEAR_ALONE
+  out_lobes.w |= kNothingPasses;
+#endif
   surface.emission *= 1.0 - lobes.clearcoat * mix(kClearcoatF0, 1.0, schlick_weight(dot(lobes.clearcoat_normal_ws, to_camera)));
 #endif
 #ifdef MOTION

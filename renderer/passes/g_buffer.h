@@ -23,14 +23,18 @@ struct GBuffer {
   void bind() const;
 };
 
+/// Which surfaces: all; all but clear ones (DeviceScene::has_clear); or these alone, where they are before the others.
+enum class GBufferLayer { kAll, kBehindClear, kClearAlone };
+
 class GBufferPass {
  public:
   explicit GBufferPass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 size_px);
   const GBuffer& g_buffer() const { return buffer_; }
   /// The camera block must be bound. `seed` decides the coverage of blended surfaces. With `motion` the displacements
-  /// are drawn as well when something moves.
-  const GBuffer& run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion = nullptr);
+  /// are drawn as well when something moves. For kClearAlone the depth of the layer behind must be bound as a GBuffer's.
+  const GBuffer& run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion = nullptr,
+                     GBufferLayer layer = GBufferLayer::kAll);
 
  private:
   struct Variant {

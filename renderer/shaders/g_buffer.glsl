@@ -43,6 +43,7 @@ GBufferPoint g_buffer_point(ivec2 pixel) {
   const uvec4 lobes = texelFetch(g_lobes, pixel, 0);
   point.brdf = with_lobes(point.brdf, base_color, blue_metallic.y, unpack_g_lobes(lobes, dielectric),
                           max(g_lobes_eta(lobes), 1e-3));
+  if ((lobes.w & kNothingPasses) != 0u) point.brdf.transmission_color = vec3(0.0);
 #endif
   return point;
 }

@@ -62,6 +62,9 @@ Brdf with_lobes(Brdf plain, vec3 base_color, float metallic, Lobes lobes, float 
   return brdf;
 }
 
+// In the last word of the lobes: what passes the surface is shown by another layer of the G-buffer.
+const uint kNothingPasses = 0x80000000u;
+
 // The G-buffer's words of the lobes; the dielectric's greatest f0 and its specular factor are elsewhere in it.
 uvec4 pack_g_lobes(Lobes lobes, bool behind) {
   const vec3 f0 = lobes.f0_dielectric;
@@ -90,4 +93,4 @@ Lobes unpack_g_lobes(uvec4 words, vec2 f0_specular) {
   return lobes;
 }
 
-float g_lobes_eta(uvec4 words) { return unpackHalf2x16(words.w).y; }
+float g_lobes_eta(uvec4 words) { return unpackHalf2x16(words.w & ~kNothingPasses).y; }

@@ -160,5 +160,48 @@ TEST(ThroughPanes, RaysAreAbsorbedFromWhereTheyBegin) {
   expect_near(render(maker.take(), camera, settings, {9, 9}).center(), glm::vec3(2.0f * 0.109692f * 0.5f), 0.03f);
 }
 
+/// Through the pane of `floor_under`, straight down.
+const PlacedCamera kOverThePane = look_parallel({0, 2, 0}, {0, 0, 0}, 0.2f);
+
+TEST(BehindPanes, ALitFloorShowsItsDirectLightTinted) {
+  SceneMaker maker = floor_under(pane(kTint), 0.5f);
+  maker.directional({0.3f, -1, 0.1f}, 10.0f);
+  const float cosine = 1.0f / std::sqrt(1.1f);
+  expect_near(render(maker.take(), kOverThePane, thesis_settings(0)).center(),
+              kTint * kTint * (0.5f / kPi * 10.0f * cosine), 0.01f);
+}
+
+// The floor is lit by the sky alone, through the pane, and seen through it: indirect light at the picture's resolution.
+TEST(BehindPanes, AFloorShowsItsIndirectLightTinted) {
+  SceneMaker maker;
+  maker.quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, maker.material(lambert(glm::vec3(0.5f))));
+  maker.quad({-400, 0.5f, -400}, {0, 0, 800}, {800, 0, 0}, maker.material(pane(kTint)));
+  add_white_sky(maker.scene());
+  for (const ViewKind view : {ViewKind::kFinal, ViewKind::kIndirect}) {
+    Settings settings = thesis_settings(1);
+    settings.view = view;
+    expect_near(render(maker.scene(), kOverThePane, settings).center(), kTint * kTint * 0.5f, 0.02f);
+  }
+}
+
+TEST(BehindPanes, TheBackgroundIsTinted) {
+  SceneMaker maker;
+  maker.quad({-2, 0.5f, -2}, {0, 0, 4}, {4, 0, 0}, maker.material(pane(kTint, 1.0f)));
+  add_white_sky(maker.scene());
+  // What the pane does not pass it reflects.
+  expect_near(render(maker.take(), kOverThePane, thesis_settings(1)).center(), 0.96f * kTint + 0.04f, 0.01f);
+}
+
+// A pane that passes half and reflects half by its diffuse base.
+TEST(BehindPanes, APaneReflectsWhatItDoesNotPass) {
+  Material half = pane(glm::vec3(0.8f, 0.6f, 0.4f));
+  half.transmission_factor = 0.5f;
+  SceneMaker maker = floor_under(half, 0.5f);
+  maker.directional({0, -1, 0}, 10.0f);
+  const glm::vec3 albedo = 0.5f * glm::vec3(0.8f, 0.6f, 0.4f);
+  expect_near(render(maker.take(), kOverThePane, thesis_settings(0)).center(),
+              10.0f / kPi * (albedo + albedo * albedo * 0.5f), 0.01f);
+}
+
 }  // namespace
 }  // namespace lightwell::testing
