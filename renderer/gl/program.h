@@ -58,6 +58,7 @@ class Uniform {
   static void set(GLuint p, GLint l, const glm::vec2& v) { glProgramUniform2f(p, l, v.x, v.y); }
   static void set(GLuint p, GLint l, const glm::vec3& v) { glProgramUniform3f(p, l, v.x, v.y, v.z); }
   static void set(GLuint p, GLint l, const glm::vec4& v) { glProgramUniform4f(p, l, v.x, v.y, v.z, v.w); }
+  static void set(GLuint p, GLint l, const glm::uvec4& v) { glProgramUniform4ui(p, l, v.x, v.y, v.z, v.w); }
   static void set(GLuint p, GLint l, const glm::mat4& v) { glProgramUniformMatrix4fv(p, l, 1, GL_FALSE, &v[0][0]); }
   GLuint program_;
   GLint location_;

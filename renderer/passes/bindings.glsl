@@ -116,5 +116,8 @@
 #define MAX_SHADOW_LAYERS 32
 #define MAX_LIGHTS 256
 
+// Of clear surfaces one behind the other, so many let light through; the next is as if opaque.
+#define MOST_CLEAR_SURFACES 8
+
 // Slots that one invocation of path_resolve.comp and path_compact.comp looks after.
 #define PATH_CHUNK 64

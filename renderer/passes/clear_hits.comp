@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #include "shaders/surface.glsl"
 #include "shaders/hit_surface.glsl"
 #include "shaders/lights.glsl"
-#include "shaders/clear_surface.glsl"
+#include "shaders/clear_hit.glsl"
 #ifdef FIRST
 #include "shaders/occlusion_ray.glsl"
 #else
@@ -31,11 +31,6 @@ uniform int goes_on;  // 0: no further surface lets light through
 
 const float kFootprintPerMetre = 0.1;  // as in hit_light.comp
 
-bool is_clear(Hit hit) {
-  const int first = int(kMaterialTexels * fetch_instance(hit.instance).material);
-  return (texelFetch(material_words, first + 3).x & kMaterialClear) != 0u;
-}
-
 // Light that the surface reflects and emits; the back of a volume's surface counts for nothing.
 vec3 own_light(Ray ray, HitPoint point, bool inside) {
   Brdf brdf = point.brdf;
@@ -48,12 +43,10 @@ vec3 own_light(Ray ray, HitPoint point, bool inside) {
 void pass_surface(uint record, Ray ray, Hit hit, vec3 tint, vec3 own) {
   const HitPoint point = hit_point(ray, hit, hit.t * kFootprintPerMetre);
   const bool inside = point.from_behind && point.brdf.eta != 1.0;
-  // A volume absorbs from the surface before, or from where the ray begins.
-  const vec3 absorbed = pow(point.medium_transmittance, vec3((hit.t - ray.t_min) / max(hit.t, 1e-20)));
-  const vec3 passed = clear_transmittance(point.brdf, point.surface.normal_ws, ray.direction_ws) * absorbed;
+  const vec3 passed = passed_straight(ray, hit, point);
   cleared[2u * record] = vec4(tint * passed, 0.0);
   cleared[2u * record + 1u] = vec4(own + tint * own_light(ray, point, inside), 0.0);
-  onward[record] = Ray(ray.origin_ws, past_surface(ray, hit.t), ray.direction_ws, 1e30);
+  onward[record] = past_surface(ray, hit);
   atomicAdd(onward_count, 1u);
 }
 
@@ -73,7 +66,7 @@ void main() {
   hits[record] = hit;
   const vec3 tint = cleared[2u * record].rgb, own = cleared[2u * record + 1u].rgb;
 #endif
-  if (goes_on == 1 && hit.t >= 0.0 && is_clear(hit))
+  if (goes_on == 1 && is_clear(hit, kMaterialClear))
     pass_surface(record, ray, hit, tint, own);
   else
     onward[record] = Ray(vec3(0.0), 0.0, vec3(0.0, 1.0, 0.0), -1.0);

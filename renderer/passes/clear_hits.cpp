@@ -6,12 +6,6 @@
 
 namespace lightwell {
 
-namespace {
-
-constexpr int kMostClearSurfaces = 8;  // as in shaders/clear_surface.glsl
-
-}  // namespace
-
 ClearHitsPass::ClearHitsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : variants_([&shaders](const gl::Defines& defines) { return shaders.compute("passes/clear_hits.comp", defines); }),
       rays_("rays through clear surfaces", 0, buffers),
@@ -42,7 +36,7 @@ std::uint64_t ClearHitsPass::run(const DeviceScene& scene, Tracer& tracer, const
   for (int surface = 1; onward > 0; ++surface) {
     tracer.closest_hit(rays_, records, hits_);
     traced += onward;
-    onward = step(next, rays, occlusion, surface < kMostClearSurfaces);
+    onward = step(next, rays, occlusion, surface < MOST_CLEAR_SURFACES);
   }
   occlusion.cleared_texels = &cleared_texels_;
   return traced;

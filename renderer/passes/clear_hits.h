@@ -15,9 +15,9 @@ class ClearHitsPass {
   /// Room for so many records; nothing is held before.
   void resize(std::uint32_t most_records);
 
-  /// Each hit on a clear surface gives way to the one behind it, along the same ray, through kMostClearSurfaces of them
-  /// (shaders/clear_surface.glsl). What they pass and send is in `occlusion.cleared_texels` from then on. The shadow
-  /// maps must be bound. Returns how many rays were traced.
+  /// Each hit on a clear surface gives way to the one behind it, along the same ray, through MOST_CLEAR_SURFACES of
+  /// them. What they pass and send is in `occlusion.cleared_texels` from then on. The shadow maps must be bound.
+  /// Returns how many rays were traced.
   std::uint64_t run(const DeviceScene& scene, Tracer& tracer, const OcclusionRays& rays, OcclusionMap& occlusion);
 
  private:

@@ -14,7 +14,6 @@
 #ifdef HAS_LOBES
 #include "shaders/lobes.glsl"
 #endif
-#include "shaders/ray.glsl"
 #include "shaders/clear_surface.glsl"
 
 in vec3 world_position;

@@ -1,4 +1,5 @@
 #include "renderer/passes/patch_samples.h"
+#include "renderer/passes/clear_shadows.h"
 
 #include <algorithm>
 
@@ -97,15 +98,17 @@ struct PatchSamplesPass::Programs {
     LightTableUniforms lights;
     gl::Uniform<std::uint32_t> sample_count;
   };
-  explicit Programs(gl::ShaderLibrary& shaders)
+  Programs(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       : surfaces([&shaders](const gl::Defines& d) { return shaders.compute("passes/surface_samples.comp", d); }),
-        hits([&shaders](const gl::Defines& d) { return shaders.compute("passes/sample_hits.comp", d); }) {}
+        hits([&shaders](const gl::Defines& d) { return shaders.compute("passes/sample_hits.comp", d); }),
+        clear_shadows(shaders, buffers) {}
   gl::Variants<SurfaceProgram> surfaces;
   gl::Variants<HitProgram> hits;
+  ClearShadowsPass clear_shadows;
 };
 
 PatchSamplesPass::PatchSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
-    : programs_(std::make_unique<Programs>(shaders)), slots_(std::make_unique<Slots>(buffers)) {}
+    : programs_(std::make_unique<Programs>(shaders, buffers)), slots_(std::make_unique<Slots>(buffers)) {}
 
 PatchSamplesPass::~PatchSamplesPass() = default;
 
@@ -147,7 +150,9 @@ const PatchSamples& PatchSamplesPass::run(FrameContext& frame, const GBuffer& g_
              grid.samples()});
   frame.timer.mark("light of hits");
   const std::uint32_t shadow_rays = grid.samples() + (samples_.lamps_sampled ? grid.texels() : 0);
-  frame.tracer.any_hit(s.first.shadow_rays, shadow_rays, s.first.visible);
+  // Behind two words a slot lies the light of the lamps.
+  programs_->clear_shadows.run(frame, s.first.shadow_rays, shadow_rays, s.first.visible,
+                               {s.first.light, 1, 2, grid.samples(), 2 * grid.samples()}, false);
   frame.rays += shadow_rays;
   frame.timer.mark("shadows of hits");
   if (paths_go_on) follow_paths(frame, lights, cache, grid);
@@ -220,7 +225,7 @@ void PatchSamplesPass::follow_paths(FrameContext& frame, const LightTable& light
   meet_hits(frame, lights, cache, grid,
             {false, wave, wave.states, paths, *s.later, stride, grid.frame_number % stride, 0, walkers});
   frame.timer.mark("light of hits");
-  frame.tracer.any_hit(wave.shadow_rays, paths, wave.visible);
+  programs_->clear_shadows.run(frame, wave.shadow_rays, paths, wave.visible, {wave.light, 1, 2}, false);
   frame.rays += 2 * paths;
   frame.timer.mark("shadows of hits");
   const gl::BufferTexture visible_texels("visible lights", GL_R32UI);

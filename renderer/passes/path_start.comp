@@ -32,7 +32,7 @@ void main() {
   ray.t_max = perspective ? 1e30 : camera.down_ws.w;
   rays[index] = ray;
   states[index] = vec4(1.0, 1.0, 1.0, 0.0);
-  paths[index] = pack_path(index, 0u);
+  paths[index] = pack_path(index, 0u, 0u);
   radiance[index] = vec4(0.0);
   slots[index] = index;
 }

@@ -131,6 +131,7 @@ struct PathTracerPass::Slots {
 
 PathTracerPass::PathTracerPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : programs_(std::make_unique<Programs>(shaders)),
+      clear_shadows_(shaders, buffers),
       most_paths_(buffers == gl::BufferUse::kHostVisible ? kPathsOnHost : kPathsOnDevice) {
   slots_ = std::make_unique<Slots>(buffers, most_paths_);
 }
@@ -149,6 +150,7 @@ PathTracerPass::VertexVariant& PathTracerPass::variant_for(const DeviceScene& sc
   gl::Defines defines =
       gl::joined(gl::joined(scene.texture_defines(), scene.brdf_defines()), scene.environment_defines());
   if (scene.is_lambert()) defines.emplace_back("LAMBERT_ONLY 1");
+  if (scene.has_clear_walls()) defines.emplace_back("CLEAR_WALLS 1");
   if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
   if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
   if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
@@ -181,7 +183,7 @@ void PathTracerPass::trace_wave(FrameContext& frame, const LightTable& lights, c
   for (std::uint32_t paths = wave.paths; paths > 0;) {
     meet_surfaces(frame, variant, paths);
     frame.timer.mark("surfaces");
-    frame.tracer.any_hit(s.shadow_rays, paths, s.visible);
+    clear_shadows_.run(frame, s.shadow_rays, paths, s.visible, {s.pending}, true);
     frame.timer.mark("shadows");
     frame.tracer.closest_hit(s.to->rays, paths, s.hits);
     frame.timer.mark("trace");

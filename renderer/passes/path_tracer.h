@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "renderer/methods/frame_context.h"
+#include "renderer/passes/clear_shadows.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/light_table.h"
 
@@ -40,6 +41,7 @@ class PathTracerPass {
 
   std::unique_ptr<Programs> programs_;
   std::unique_ptr<Slots> slots_;
+  ClearShadowsPass clear_shadows_;
   std::uint32_t most_paths_;  // in a wave
   Picture picture_;
   gl::Framebuffer framebuffer_;

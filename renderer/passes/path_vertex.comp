@@ -1,6 +1,8 @@
 // A path meets a surface, or leaves the scene. Its light is added, weighted against what the last surface's sample of the
 // lights could have found (Veach 1997, power heuristic); a light is sampled, to be added if its shadow ray gets through;
 // and the path goes on along a direction sampled by the BRDF, or ends.
+// CLEAR_WALLS: there are thin surfaces that light goes straight on through. Shadow rays pass them (clear_shadows.comp), and
+// so do paths, as if they met nothing: to pass one is no bounce.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -15,6 +17,9 @@ layout(local_size_x = 64) in;
 #endif
 #include "shaders/surface.glsl"
 #include "shaders/hit_surface.glsl"
+#ifdef CLEAR_WALLS
+#include "shaders/clear_hit.glsl"
+#endif
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 #include "shaders/light_sampling.glsl"
@@ -60,17 +65,26 @@ struct Path {
   float pdf;
   uint pixel;
   uint depth;
+  uint walls;
 };
 
 void add_light(Path path, vec3 light, bool direct) {
   if (greatest(light) > 0.0) radiance[path.pixel] += shown_light(light, direct);
 }
 
+// What the camera sees that is no lit surface: `mark` tells what it is, see Picture, unless there is a clear wall before it.
+void see_unlit(Path path, vec3 light, float mark) {
+  if (radiance[path.pixel].a == 0.0)
+    radiance[path.pixel] = vec4(light * shown.x, mark);
+  else
+    add_light(path, path.throughput * light, true);
+}
+
 // Light from beyond the scene.
 void leave_scene(Path path) {
   const vec3 direction = path.ray.direction_ws;
   if (path.depth == 0u) {
-    radiance[path.pixel] = vec4(background_radiance(direction) * shown.x, 0.0);
+    see_unlit(path, background_radiance(direction), 0.0);
     return;
   }
 #ifdef LIGHTS_ENVIRONMENT
@@ -83,7 +97,7 @@ void add_emission(Path path, Hit hit, HitPoint point) {
   const bool seen = path.depth == 0u;
   const bool unlit = (point.material_flags & kMaterialUnlit) != 0u;
   if (unlit) {
-    if (seen) radiance[path.pixel] = vec4(point.surface.base_color.rgb * shown.x, -1.0);
+    if (seen) see_unlit(path, point.surface.base_color.rgb, -1.0);
     return;
   }
   float weight = 1.0;
@@ -91,7 +105,7 @@ void add_emission(Path path, Hit hit, HitPoint point) {
   const float cosine = dot(point.geometric_normal_ws, path.ray.direction_ws);
   if (!seen) weight = weight_of_found_light(path.pdf, triangle_pdf(hit.instance, hit.triangle, hit.t, cosine));
 #endif
-  if (seen) radiance[path.pixel].a = 1.0;  // a surface: see Picture
+  if (seen && radiance[path.pixel].a == 0.0) radiance[path.pixel].a = 1.0;  // a surface: see Picture
   add_light(path, path.throughput * point.surface.emission * weight, seen);
 }
 
@@ -99,6 +113,15 @@ void add_emission(Path path, Hit hit, HitPoint point) {
 vec3 reflected(HitPoint point, vec3 out_direction, vec3 in_direction, vec3 in_ws) {
   const bool agree = in_direction.z * dot(in_ws, point.geometric_normal_ws) > 0.0;
   return agree ? brdf_times_cosine(point.brdf, out_direction, in_direction) : vec3(0.0);
+}
+
+// A direction whose light the path's own ray brings, straight through a clear wall.
+bool is_straight_on(HitPoint point, vec3 in_direction) {
+#ifdef CLEAR_WALLS
+  return (point.material_flags & kMaterialClearWall) != 0u && in_direction.z < 0.0;
+#else
+  return false;
+#endif
 }
 
 void sample_lights(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_direction, uint pixel_seed,
@@ -112,7 +135,8 @@ void sample_lights(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, ve
   const TableSample at = sample_light(point.position_ws, path.depth >= most_bounces, u, u_choice, u_cell);
   const vec3 in_direction = at.to_light_ws * frame;
   const float weight = weight_of_sampled_light(at.pdf, brdf_pdf(point.brdf, out_direction, in_direction));
-  if (lit) light = path.throughput * reflected(point, out_direction, in_direction, at.to_light_ws) * at.value * weight;
+  if (lit && !is_straight_on(point, in_direction))
+    light = path.throughput * reflected(point, out_direction, in_direction, at.to_light_ws) * at.value * weight;
   const bool worthwhile = greatest(light) > 0.0;
   const vec3 origin_ws = lifted(point.position_ws, point.geometric_normal_ws, hit.t, at.to_light_ws);
   if (worthwhile) ray = shadow_ray(origin_ws, point.position_ws, at);
@@ -141,8 +165,25 @@ void go_on(uint slot, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_d
   const vec3 origin_ws = lifted(point.position_ws, point.geometric_normal_ws, hit.t, in_ws);
   rays[slot] = alive ? Ray(origin_ws, 0.0, in_ws, 1e30) : kNoRay;
   states[slot] = vec4(throughput, pdf);
-  paths[slot] = alive ? pack_path(path.pixel, path.depth + 1u) : kDeadPath;
+  paths[slot] = alive ? pack_path(path.pixel, path.depth + 1u, 0u) : kDeadPath;
 }
+
+#ifdef CLEAR_WALLS
+// By chance, instead of go_on(): the path passes the wall. Lights behind it are found by what comes before the wall, whose
+// density stays.
+bool passes_wall(uint slot, Path path, Hit hit, HitPoint point, vec3 out_direction, float u_lobe) {
+  const float share = lobe_probabilities(point.brdf, out_direction).w;
+  if ((point.material_flags & kMaterialClearWall) == 0u || u_lobe >= share) return false;
+  const vec3 passed = clear_transmittance(point.brdf, vec3(0.0, 0.0, 1.0), out_direction);
+  const vec3 throughput = path.throughput * passed / share;
+  const bool alive = greatest(throughput) > 0.0;
+  if (alive) rays[slot] = past_surface(path.ray, hit);
+  else rays[slot] = kNoRay;
+  states[slot] = vec4(throughput, path.pdf);
+  paths[slot] = alive ? pack_path(path.pixel, path.depth, (path.walls + 1u) & 7u) : kDeadPath;
+  return true;
+}
+#endif
 
 void end_path(uint slot) {
   rays[slot] = kNoRay;
@@ -157,7 +198,7 @@ void pass_through(uint slot, Path path, Hit hit) {
   shadow_rays[slot] = kNoRay;
   pending[slot].w = kDeadPath;
   states[slot] = vec4(path.throughput, path.pdf);
-  paths[slot] = pack_path(path.pixel, path.depth);
+  paths[slot] = pack_path(path.pixel, path.depth, path.walls);
 }
 
 void main() {
@@ -167,7 +208,8 @@ void main() {
   const vec4 state = texelFetch(states_in, from);
   const uint packed_path = texelFetch(paths_in, from).x;
   const Hit hit = fetch_hit(from);
-  Path path = Path(fetch_ray(from), state.xyz, state.w, path_pixel(packed_path), path_depth(packed_path));
+  Path path = Path(fetch_ray(from), state.xyz, state.w, path_pixel(packed_path), path_depth(packed_path),
+                   path_walls(packed_path));
   if (hit.t < 0.0) {
     leave_scene(path);
     end_path(slot);
@@ -181,11 +223,14 @@ void main() {
   path.throughput *= point.medium_transmittance;
   add_emission(path, hit, point);
   const bool lit = (point.material_flags & kMaterialUnlit) == 0u;
-  const uint seed_of_pixel = pixel_seed(picture_pixel(path.pixel));
+  const uint seed_of_pixel = pixel_seed(picture_pixel(path.pixel)) + path.walls * 0x68bc21ebu;
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 out_direction = -path.ray.direction_ws * frame;
   point.brdf = brdf_in_frame(point.brdf, frame);
   const vec2 u_kinds = sobol_2d(sample_number, decision_seed(seed_of_pixel, path.depth, kDecisionKinds));
   sample_lights(slot, path, hit, point, frame, out_direction, seed_of_pixel, u_kinds.x, lit);
+#ifdef CLEAR_WALLS
+  if (lit && passes_wall(slot, path, hit, point, out_direction, u_kinds.y)) return;
+#endif
   go_on(slot, path, hit, point, frame, out_direction, seed_of_pixel, u_kinds.y, lit);
 }

@@ -18,6 +18,7 @@ PunctualLightPass::PunctualLightPass(gl::ShaderLibrary& shaders, gl::BufferUse b
     : variants_(
           [&shaders](const gl::Defines& defines) { return shaders.compute("passes/punctual_light.comp", defines); }),
       buffers_(buffers),
+      clear_shadows_(shaders, buffers),
       rays_("punctual shadow rays", 0, buffers) {
   traced_.light = gl::Buffer("punctual light", 0);
   traced_.visible = gl::Buffer("visible punctual lights", 0, buffers);
@@ -51,7 +52,7 @@ const TracedLight& PunctualLightPass::run(FrameContext& frame, const GBuffer& g_
   variant.program->dispatch(frame.size_px);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   frame.timer.mark("direct light");
-  frame.tracer.any_hit(rays_, pixels_of(frame.size_px), traced_.visible);
+  clear_shadows_.run(frame, rays_, pixels_of(frame.size_px), traced_.visible, {traced_.light}, false);
   frame.rays += pixels_of(frame.size_px);
   frame.timer.mark("shadows");
   return traced_;

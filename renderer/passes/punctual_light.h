@@ -3,6 +3,7 @@
 
 #include "renderer/gl/variants.h"
 #include "renderer/methods/frame_context.h"
+#include "renderer/passes/clear_shadows.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/light_table.h"
 
@@ -35,6 +36,7 @@ class PunctualLightPass {
   };
   gl::Variants<Variant> variants_;
   gl::BufferUse buffers_;
+  ClearShadowsPass clear_shadows_;
   gl::Buffer rays_;
   TracedLight traced_;
 };

@@ -1,7 +1,4 @@
-// Clear surfaces, which light goes straight on through: kMaterialClear. Needs scene_data, brdf, ray.
-
-// Of such surfaces one behind the other, so many let light through; the next one is as if opaque.
-const int kMostClearSurfaces = 8;
+// Clear surfaces, which light goes straight on through: kMaterialClear. Needs scene_data, brdf.
 
 #ifdef HAS_LOBES
 // What of the light along `direction` passes: the integral of transmission_times_cosine() over the directions below, where
@@ -15,9 +12,3 @@ vec3 clear_transmittance(Brdf brdf, vec3 normal, vec3 direction) {
          ((1.0 - reflected) * under_coat * under_coat * sheen_passes(brdf, cosine, cosine));
 }
 #endif
-
-// Where a ray goes on that has passed a surface at `t`: well over the rounding of the hit, for it must not be met again.
-float past_surface(Ray ray, float t) {
-  const vec3 reach = abs(ray.origin_ws) + t;
-  return t + 1e-5 * max(reach.x, max(reach.y, reach.z));
-}

@@ -1,13 +1,17 @@
 // The state of paths in flight: renderer/passes/path_tracer.h. A path lives in a slot; slots are packed anew after every
 // bounce, so that all lanes have work. Needs packing, sampling.
 
-// Which pixel of the wave a path belongs to, and how many surfaces it has met.
+// Which pixel of the wave a path belongs to, how many surfaces it has met, and through how many clear walls it has come
+// since (the last three bits of it).
 const uint kDeadPath = 0xffffffffu;
-const uint kPixelBits = 20u;
-uint pack_path(uint pixel, uint depth) { return pixel | depth << kPixelBits; }
+const uint kPixelBits = 20u, kDepthBits = 9u;
+uint pack_path(uint pixel, uint depth, uint walls) {
+  return pixel | depth << kPixelBits | walls << (kPixelBits + kDepthBits);
+}
 uint path_pixel(uint path) { return path & ((1u << kPixelBits) - 1u); }
-uint path_depth(uint path) { return path >> kPixelBits; }
-const uint kGreatestDepth = (1u << (32u - kPixelBits)) - 2u;
+uint path_depth(uint path) { return path >> kPixelBits & ((1u << kDepthBits) - 1u); }
+uint path_walls(uint path) { return path >> (kPixelBits + kDepthBits); }
+const uint kGreatestDepth = (1u << kDepthBits) - 2u;
 
 // Light that waits for its shadow ray; kDeadPath where there is none.
 const uint kDirectLight = 1u << 31u;

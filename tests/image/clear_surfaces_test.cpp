@@ -203,5 +203,30 @@ TEST(BehindPanes, APaneReflectsWhatItDoesNotPass) {
               10.0f / kPi * (albedo + albedo * albedo * 0.5f), 0.01f);
 }
 
+// Straight connections through thin walls have an exact value, which the reference takes, too.
+TEST(ReferencePanes, ASunThroughAPaneHasItsExactValue) {
+  SceneMaker maker = floor_under(pane(kTint, 1.0f), 0.5f);
+  maker.directional({0.3f, -1, 0.1f}, 10.0f);
+  const float cosine = 1.0f / std::sqrt(1.1f), passed = 1.0f - (0.04f + 0.96f * std::pow(1.0f - cosine, 5.0f));
+  Settings settings = thesis_settings(0);
+  settings.method = Method::kReference;
+  expect_near(render(maker.scene(), kUnderThePane, settings, {9, 9}, 4).center(),
+              kTint * (0.5f / kPi * 10.0f * cosine * passed), 0.002f);
+  settings.method = Method::kRealtime;
+  expect_near(render(maker.scene(), kUnderThePane, settings, {9, 9}).center(),
+              kTint * (0.5f / kPi * 10.0f * cosine * passed), 0.002f);
+}
+
+// To pass a clear wall is no bounce: the floor's direct light, seen and lit through it.
+TEST(ReferencePanes, AFloorBehindAPaneIsSeenWithoutABounce) {
+  SceneMaker maker = floor_under(pane(kTint), 0.5f);
+  maker.directional({0.3f, -1, 0.1f}, 10.0f);
+  const float cosine = 1.0f / std::sqrt(1.1f);
+  Settings settings = thesis_settings(0);
+  settings.method = Method::kReference;
+  expect_near(render(maker.scene(), kOverThePane, settings, {9, 9}, 4).mean(),
+              kTint * kTint * (0.5f / kPi * 10.0f * cosine), 0.002f);
+}
+
 }  // namespace
 }  // namespace lightwell::testing
