@@ -171,8 +171,8 @@ void ThesisMethod::find_patches(FrameContext& frame, const GBuffer& g_buffer, co
 }
 
 // The directions [first, first + batch) and their hits. A single batch is made and traced once for all bounces.
-Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                                      std::uint32_t first, std::uint32_t batch) {
+Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                                      const IndirectMapGrid& grid, std::uint32_t first, std::uint32_t batch) {
   if (traced_ != nullptr && traced_->first == first) return *traced_;
   const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
   const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
@@ -183,7 +183,7 @@ Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buff
   occlusion_.cleared_texels = nullptr;
   if (frame.scene.has_clear()) {
     const OcclusionRays rays{*traced_, *patches_, active_blocks_->slots()};
-    frame.rays += clear_hits_pass_.run(frame.scene, frame.tracer, rays, occlusion_);
+    frame.rays += clear_hits_pass_.run(frame.scene, frame.tracer, shadows, rays, occlusion_);
     frame.timer.mark("clear surfaces");
   }
   return *traced_;
@@ -216,7 +216,8 @@ void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, c
   const std::uint32_t batch = directions_per_batch(grid, frame.settings, frame.scene.has_clear());
   const bool literal = frame.settings.estimator == Estimator::kLiteral;
   for (std::uint32_t first = 0; first < samples; first += batch) {
-    const OcclusionRays rays{trace_batch(frame, g_buffer, grid, first, batch), *patches_, active_blocks_->slots()};
+    const OcclusionRays rays{trace_batch(frame, g_buffer, shadows, grid, first, batch), *patches_,
+                             active_blocks_->slots()};
     if (first_bounce && MapViewPass::is_of_batch(frame.settings, first, rays.directions.count))
       map_view_pass_.run(grid, *active_blocks_, rays, occlusion_, candidates_, frame.settings);
     if (first_bounce)

@@ -32,8 +32,8 @@ class ThesisMethod {
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);
   void find_patches(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid);
-  Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid,
-                          std::uint32_t first, std::uint32_t batch);
+  Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                          const IndirectMapGrid& grid, std::uint32_t first, std::uint32_t batch);
   void trace(FrameContext& frame, const Directions& directions);
   void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMapGrid& grid, const ScreenLight* screen);

@@ -22,13 +22,14 @@ void ClearHitsPass::resize(std::uint32_t most_records) {
   cleared_texels_.attach(cleared_);
 }
 
-std::uint64_t ClearHitsPass::run(const DeviceScene& scene, Tracer& tracer, const OcclusionRays& rays,
-                                 OcclusionMap& occlusion) {
-  const gl::Defines defines =
-      gl::joined(gl::joined(scene.texture_defines(), scene.light_defines()), scene.brdf_defines());
+std::uint64_t ClearHitsPass::run(const DeviceScene& scene, Tracer& tracer, const ShadowMaps& shadows,
+                                 const OcclusionRays& rays, OcclusionMap& occlusion) {
+  gl::Defines defines = gl::joined(gl::joined(scene.texture_defines(), scene.light_defines()), scene.brdf_defines());
+  defines.emplace_back("CLEAR_RECEIVER 1");
   const std::uint32_t records = rays.slots * rays.directions.count;
   Variant& first = variants_.with(gl::joined(gl::joined(defines, rays.patches.defines()), {"FIRST 1"}));
   Variant& next = variants_.with(defines);
+  shadows.bind();
   rays.directions.ray_texels.bind(UNIT_RAYS);
   std::uint64_t traced = 0;
   std::uint32_t onward = step(first, rays, occlusion, true);

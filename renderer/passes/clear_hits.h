@@ -16,9 +16,10 @@ class ClearHitsPass {
   void resize(std::uint32_t most_records);
 
   /// Each hit on a clear surface gives way to the one behind it, along the same ray, through MOST_CLEAR_SURFACES of
-  /// them. What they pass and send is in `occlusion.cleared_texels` from then on. The shadow maps must be bound.
+  /// them. What they pass and send is in `occlusion.cleared_texels` from then on.
   /// Returns how many rays were traced.
-  std::uint64_t run(const DeviceScene& scene, Tracer& tracer, const OcclusionRays& rays, OcclusionMap& occlusion);
+  std::uint64_t run(const DeviceScene& scene, Tracer& tracer, const ShadowMaps& shadows, const OcclusionRays& rays,
+                    OcclusionMap& occlusion);
 
  private:
   struct Variant {

@@ -136,7 +136,7 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
 const Picture& ComposePass::run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
                                      const ShadowMaps& shadows, const IndirectMap& indirect, const GatherPass& gathered,
                                      const Settings& settings, bool accumulate) {
-  const gl::Defines over{"OVER_BEHIND 1"};
+  const gl::Defines over{"OVER_BEHIND 1", "CLEAR_RECEIVER 1"};
   g_buffer.bind();
   shadows.bind();
   indirect.image.bind(UNIT_IMAGE_B);

@@ -1,6 +1,7 @@
 // Punctual lights and their variance shadow maps. Needs bindings, brdf, sampling.
 // Defines, for what a scene has: MANY_LIGHTS for more than two, TWO_LIGHTS for two, else there is one or none.
-// POINT_LIGHTS if some of them are; TINTED_SHADOWS if surfaces let light through that are not in the moments of depth.
+// POINT_LIGHTS if some of them are; TINTED_SHADOWS if surfaces let light through that are not in the moments of depth,
+// CLEAR_RECEIVER for the light of these surfaces themselves.
 
 struct Light {
   vec3 position_ws;
@@ -29,16 +30,29 @@ layout(binding = UNIT_SHADOW_MOMENTS) uniform sampler2DArray shadow_moments;  //
 #ifdef TINTED_SHADOWS
 // What surfaces before the nearest opaque one let through, all together; a: the depth of the nearest of them.
 layout(binding = UNIT_SHADOW_TINT) uniform sampler2DArray shadow_tint;
-const float kTintBias = 2e-3;  // of depth: no surface tints its own light
+const float kTintBias = 2e-3;  // of depth
+
+// How much farther than the nearest such surface a point lies that is behind it. What is clear itself (CLEAR_RECEIVER) must
+// not tint its own light: the least depth about a texel is less than its own by its slope.
+float tint_bias(vec3 normal_ws, vec3 to_light_ws, float depth) {
+#ifdef CLEAR_RECEIVER
+  const float cosine = max(abs(dot(normal_ws, to_light_ws)), 0.02);
+  const float slope = sqrt(1.0 - min(cosine * cosine, 1.0)) / cosine;
+  return kTintBias + 3.0 * slope * depth * 2.0 / float(textureSize(shadow_tint, 0).x);
+#else
+  return kTintBias;
+#endif
+}
 
 #define Visibility vec3
-Visibility tint_of_way(vec3 place, float depth) {
+Visibility tint_of_way(vec3 place, float depth, float bias) {
   const vec4 tint = textureLod(shadow_tint, place, 0.0);
-  return depth > tint.a + kTintBias ? tint.rgb : vec3(1.0);
+  return depth > tint.a + bias ? tint.rgb : vec3(1.0);
 }
 #else
+float tint_bias(vec3 normal_ws, vec3 to_light_ws, float depth) { return 0.0; }
 #define Visibility float
-Visibility tint_of_way(vec3 place, float depth) { return 1.0; }
+Visibility tint_of_way(vec3 place, float depth, float bias) { return 1.0; }
 #endif
 
 // Chebyshev's inequality on the moments of depth: Donnelly and Lauritzen 2006, "Variance shadow maps".
@@ -59,7 +73,7 @@ vec3 cube_face(vec3 direction) {
 }
 
 // Share of the light that reaches a point, from the shadow map; 1 outside it.
-Visibility light_visibility(Light light, vec3 position_ws) {
+Visibility light_visibility(Light light, vec3 position_ws, vec3 normal_ws, vec3 to_light_ws) {
   const vec3 from_light = position_ws - light.position_ws;
   const vec4 clip = light.shadow_clip_from_world * vec4(position_ws, 1.0);
   vec2 ndc = clip.xy / clip.w;
@@ -76,7 +90,7 @@ Visibility light_visibility(Light light, vec3 position_ws) {
   const vec3 place = vec3(ndc * 0.5 + 0.5, layer);
   const vec2 moments = textureLod(shadow_moments, place, 0.0).rg;
   const bool unknown = outside || light.first_shadow_layer < 0;
-  return unknown ? Visibility(1.0) : chebyshev_upper_bound(moments, depth) * tint_of_way(place, depth);
+  return unknown ? Visibility(1.0) : chebyshev_upper_bound(moments, depth) * tint_of_way(place, depth, tint_bias(normal_ws, to_light_ws, depth));
 }
 
 struct LightSample {
@@ -109,7 +123,7 @@ LightSample light_at(Light light, vec3 position_ws) {
 vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
   const LightSample at = light_at(light, position_ws);
   const vec3 reflected = brdf_times_cosine(brdf, normal_ws, out_ws, at.to_light_ws);
-  return reflected * at.irradiance * light_visibility(light, position_ws);
+  return reflected * at.irradiance * light_visibility(light, position_ws, normal_ws, at.to_light_ws);
 }
 
 // Radiance towards `out_ws` of punctual light reflected at a point. `normal_ws` is the shading normal on the viewer's side.

@@ -132,5 +132,31 @@ TEST(MethodsAgree, ABlockInTheLightOfAPoint) {
   EXPECT_LT(std::abs(difference("point light, block", scene, ViewKind::kIndirect).sigmas), 3.0);
 }
 
+/// A pane that parts the room, the lamp behind it; `transmission` of what it does not reflect goes on.
+Scene room_with_a_pane(float transmission) {
+  SceneMaker maker;
+  room(maker);
+  block(maker);
+  Material pane = lambert({0.8f, 0.5f, 0.2f});
+  pane.roughness_factor = 0.0f;
+  pane.transmission_factor = transmission;
+  pane.double_sided = true;
+  maker.quad({-1, -1, 0.2f}, {2, 0, 0}, {0, 2, 0}, maker.material(pane));
+  maker.point({0.3f, 0.6f, -0.3f}, 3.0f);
+  return maker.take();
+}
+
+TEST(MethodsAgree, ATintedPaneBeforeTheLamp) {
+  const Scene scene = room_with_a_pane(1.0f);
+  EXPECT_LT(std::abs(direct_difference("tinted pane", scene, 512, 3)), 3e-3);
+  EXPECT_LT(std::abs(difference("tinted pane", scene, ViewKind::kIndirect).sigmas), 3.0);
+}
+
+TEST(MethodsAgree, APaneThatReflectsAndPasses) {
+  const Scene scene = room_with_a_pane(0.5f);
+  EXPECT_LT(std::abs(direct_difference("half reflecting pane", scene, 512, 3)), 3e-3);
+  EXPECT_LT(std::abs(difference("half reflecting pane", scene, ViewKind::kIndirect).sigmas), 3.0);
+}
+
 }  // namespace
 }  // namespace lightwell::testing
