@@ -78,8 +78,8 @@ const Picture& ThesisMethod::clear_surfaces_over(const Picture& behind, FrameCon
   clear_layers_pass_.resize(frame.size_px);
   clear_g_buffer_pass_.resize(frame.size_px);
   const gl::Texture& layers = clear_layers_pass_.run(frame.scene, g_buffer);
-  const GBuffer& front =
-      clear_g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number, GBufferLayer::kClearAlone);
+  const GBuffer& front = clear_g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number, nullptr,
+                                                  GBufferLayer::kClearAlone);
   frame.timer.mark("g-buffer");
   const IndirectMap& indirect = reflected_by_clear(frame, front, g_buffer, shadows, grid);
   clear_compose_pass_.resize(front.depth);

@@ -31,10 +31,15 @@ uniform int goes_on;  // 0: no further surface lets light through
 
 const float kFootprintPerMetre = 0.1;  // as in hit_light.comp
 
+// A clear surface's highlight of a lamp is so small that rays find it as rare bright spots: they see it wider (Kaplanyan and
+// Dachsbacher 2013, "Path space regularization for holistic and robust light transport").
+const float kLeastAlpha = 0.25;
+
 // Light that the surface reflects and emits; the back of a volume's surface counts for nothing.
 vec3 own_light(Ray ray, HitPoint point, bool inside) {
   Brdf brdf = point.brdf;
   brdf.transmission_color = vec3(0.0);
+  brdf.alpha = max(brdf.alpha, kLeastAlpha);
   const vec3 light = point.surface.emission +
                      reflected_punctual_light(brdf, point.position_ws, point.surface.normal_ws, -ray.direction_ws);
   return inside ? vec3(0.0) : light;

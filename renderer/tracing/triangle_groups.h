@@ -10,9 +10,14 @@
 
 namespace lightwell {
 
-/// Triangle t of group g is triangle t * k + g of its primitive. Groups have hierarchies of their own.
+/// Triangle t of group g is triangle t * k + g of its primitive. Groups have hierarchies of their own, which are kept
+/// for a few values of k at once, so that sessions with different ones can take turns: until another kMostKept values
+/// have been asked for, none has for kFramesUntilDropped frames, or nobody else holds their primitives any more.
 class TriangleGroups {
  public:
+  static constexpr std::size_t kMostKept = 4;
+  static constexpr std::uint64_t kFramesUntilDropped = 120;
+
   explicit TriangleGroups(std::function<std::unique_ptr<Tracer>()> make_tracer);
 
   /// Takes the instances of this frame in `count` groups.
@@ -28,11 +33,17 @@ class TriangleGroups {
     std::vector<std::shared_ptr<const Primitive>> parts;
     std::uint64_t last_used = 0;
   };
-  const Parts& parts_of(const std::shared_ptr<const Primitive>& primitive, std::uint32_t count);
+  struct Groups {                                  // of one k
+    std::vector<std::unique_ptr<Tracer>> tracers;  // one a group
+    std::map<const Primitive*, Parts> primitives;
+    std::uint64_t last_used = 0;
+  };
+  const Parts& parts_of(Groups& groups, const std::shared_ptr<const Primitive>& primitive) const;
+  void drop_unused();
 
   std::function<std::unique_ptr<Tracer>()> make_tracer_;
-  std::vector<std::unique_ptr<Tracer>> tracers_;  // one a group
-  std::map<const Primitive*, Parts> primitives_;
+  std::map<std::uint32_t, Groups> kept_;  // by k
+  Groups* current_ = nullptr;             // of the last update
   std::uint64_t frame_ = 0;
 };
 
