@@ -72,6 +72,7 @@ struct SettingsSpec {
   std::optional<std::int32_t> shadow_filter;         // pixels, 1 or more
   std::optional<bool> denoise;
   std::optional<bool> multiple_scattering;
+  std::optional<bool> temporal_antialiasing;
 
   bool operator==(const SettingsSpec&) const = default;
 };

@@ -121,6 +121,7 @@ void read_settings(const Value& value, SettingsSpec& out) {
   object.optional("shadow_filter", settings.shadow_filter, at_least_one);
   object.optional("denoise", settings.denoise, read_boolean);
   object.optional("multiple_scattering", settings.multiple_scattering, read_boolean);
+  object.optional("temporal_antialiasing", settings.temporal_antialiasing, read_boolean);
   object.finish();
   if (!value.reading.failed()) out = std::move(settings);
 }

@@ -213,6 +213,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "shadow_filter", settings.shadow_filter);
   give(object, "denoise", settings.denoise);
   give(object, "multiple_scattering", settings.multiple_scattering);
+  give(object, "temporal_antialiasing", settings.temporal_antialiasing);
   return object;
 }
 

@@ -207,7 +207,10 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     // A view of surfaces by `thesis` in another method's place: its bounces, which may be without limit, do not show.
     if (method != settings.method) settings.bounces = std::min(settings.bounces, 1);
     // The paths of `reference` have a jitter of their own.
-    const glm::vec2 jitter_px = method == Method::kReference ? glm::vec2(0.0f) : pixel_jitter(view.accumulated);
+    const bool over_time = method == Method::kRealtime && settings.temporal_antialiasing && view.accumulated == 0;
+    const glm::vec2 jitter_px = method == Method::kReference
+                                    ? glm::vec2(0.0f)
+                                    : pixel_jitter(over_time ? view.realtime().frame_number() : view.accumulated);
     state_->bind_frame(scene, request, jitter_px);
     state_->timer.mark("scene");
 

@@ -97,6 +97,7 @@ struct Settings {
   bool denoise = false;                 // edge-stopping filter over the indirect map (not in the thesis)
   bool multiple_scattering = false;     // light between microfacets is kept: rough surfaces lose no energy
   LightStrategy light_strategy = LightStrategy::kBoth;
+  bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
 };
 
 /// The first setting out of range, by its name on the command line; Done if all are good.

@@ -40,6 +40,7 @@ class SettingsReader {
     read_value(spec.shadow_filter, settings_.shadow_filter);
     read_value(spec.denoise, settings_.denoise);
     read_value(spec.multiple_scattering, settings_.multiple_scattering);
+    read_value(spec.temporal_antialiasing, settings_.temporal_antialiasing);
     if (spec.exposure_ev) {
       settings_.exposure_ev.reset();
       if (*spec.exposure_ev) settings_.exposure_ev = static_cast<float>(**spec.exposure_ev);
@@ -142,6 +143,7 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.shadow_filter = settings.shadow_filter;
   spec.denoise = settings.denoise;
   spec.multiple_scattering = settings.multiple_scattering;
+  spec.temporal_antialiasing = settings.temporal_antialiasing;
   return spec;
 }
 

@@ -150,7 +150,13 @@ export class Panel {
     const multiple_scattering = this.setting("multiple_scattering", make_toggle, {
       label: "Multiple scattering", hint: "Keeps the light that bounces between the microfacets of rough surfaces",
     });
-    return [method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row];
+    const temporal_antialiasing = this.setting("temporal_antialiasing", make_toggle, {
+      label: "Temporal anti-aliasing", hint: "With realtime: edges smooth over the frames, along with what moves",
+    });
+    return [
+      method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row,
+      temporal_antialiasing.row,
+    ];
   }
 
   /** What a choice of the method changes: a number of bounces that it does not know goes with the old one. */

@@ -40,7 +40,8 @@ RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       samples_pass_(shaders, buffers),
       cache_(shaders),
       reconstruction_pass_(shaders),
-      compose_pass_(shaders) {}
+      compose_pass_(shaders),
+      antialiasing_pass_(shaders) {}
 
 const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera,
                                       glm::vec2 jitter_px) {
@@ -55,12 +56,36 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   frame.timer.mark("g-buffer");
   punctual_light_pass_.resize(frame.size_px);
   const TracedLight& direct = punctual_light_pass_.run(frame, g_buffer, lights_, frame_number_);
-  const ReconstructedMap indirect = indirect_light(frame, g_buffer, camera, jitter_px);
+  // With this frame's jitter, so that what stands still is found exactly where it was.
+  const auto clip_from_world = [&](const PlacedCamera& c) {
+    return make_camera_block(c, frame.size_px, jitter_px).clip_from_world;
+  };
+  const glm::mat4 previous_clip_from_world = clip_from_world(frame_number_ > 0 ? previous_camera_ : camera);
+  const ReconstructedMap indirect = indirect_light(frame, g_buffer, previous_clip_from_world);
   compose_pass_.resize(g_buffer.depth);
-  const Picture& picture = compose_pass_.run(frame.scene, g_buffer, direct, indirect, frame.settings, frame.accumulate);
+  const Picture& composed = compose_pass_.run(frame.scene, g_buffer, direct, indirect, frame.settings,
+                                              frame.accumulate && !frame.settings.temporal_antialiasing);
   frame.timer.mark("compose");
+  const bool unchanged =
+      clip_from_world(camera) == previous_clip_from_world && !change_.moving && change_.light_share == 0.0f;
+  const Picture& picture = over_time(frame, composed, g_buffer, previous_clip_from_world, unchanged);
   previous_camera_ = camera;
   ++frame_number_;
+  return picture;
+}
+
+const Picture& RealtimeMethod::over_time(FrameContext& frame, const Picture& composed, const GBuffer& g_buffer,
+                                         const glm::mat4& previous_clip_from_world, bool unchanged) {
+  if (!frame.settings.temporal_antialiasing) {
+    antialiasing_pass_.forget();
+    return composed;
+  }
+  antialiasing_pass_.resize(frame.size_px);
+  const bool accumulates = frame.accumulate && frame.frame_number > 0;
+  const Picture& picture = accumulates
+                               ? antialiasing_pass_.refine(composed, frame.frame_number)
+                               : antialiasing_pass_.blend(composed, g_buffer, previous_clip_from_world, unchanged);
+  frame.timer.mark("anti-aliasing");
   return picture;
 }
 
@@ -75,7 +100,7 @@ PatchGrid RealtimeMethod::grid_of(const FrameContext& frame) const {
 }
 
 ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuffer& g_buffer,
-                                                const PlacedCamera& camera, glm::vec2 jitter_px) {
+                                                const glm::mat4& previous_clip_from_world) {
   const PatchGrid grid = grid_of(frame);
   samples_pass_.resize(grid);
   reconstruction_pass_.resize(grid.map_size_px);
@@ -83,9 +108,6 @@ ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuff
   cache_.begin_frame(frame.pose, change_);
   const std::uint32_t stride = frame_number_ - filled_from_ < kFillingFrames ? 1 : kPathStride;
   const PatchSamples& samples = samples_pass_.run(frame, g_buffer, lights_, cache_, grid, stride);
-  // With this frame's jitter, so that what stands still is found exactly where it was.
-  const PlacedCamera& before = frame_number_ > 0 ? previous_camera_ : camera;
-  const glm::mat4 previous_clip_from_world = make_camera_block(before, frame.size_px, jitter_px).clip_from_world;
   const ReconstructedMap map = reconstruction_pass_.run(
       g_buffer, frame.scene, samples, grid, previous_clip_from_world,
       kept_frames(change_, frame.settings.bounces > 2, frame_number_ - moved_in_, frame_number_ - filled_from_));

@@ -13,6 +13,7 @@
 #include "renderer/passes/radiance_cache.h"
 #include "renderer/passes/reconstruction.h"
 #include "renderer/passes/scene_changes.h"
+#include "renderer/passes/temporal_antialiasing.h"
 
 namespace lightwell {
 
@@ -21,13 +22,18 @@ class RealtimeMethod {
   /// `buffers`: where rays and hits live; host-visible for a native tracer.
   RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
 
+  /// The number of the next frame: how its picture is to be shifted.
+  std::uint32_t frame_number() const { return frame_number_; }
+
   /// One frame, with what is known of the frames before. The camera and environment blocks and the scene are bound; the
   /// picture is moved by `jitter_px` of a pixel.
   const Picture& render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera, glm::vec2 jitter_px);
 
  private:
-  ReconstructedMap indirect_light(FrameContext& frame, const GBuffer& g_buffer, const PlacedCamera& camera,
-                                  glm::vec2 jitter_px);
+  ReconstructedMap indirect_light(FrameContext& frame, const GBuffer& g_buffer,
+                                  const glm::mat4& previous_clip_from_world);
+  const Picture& over_time(FrameContext& frame, const Picture& composed, const GBuffer& g_buffer,
+                           const glm::mat4& previous_clip_from_world, bool unchanged);
   PatchGrid grid_of(const FrameContext& frame) const;
 
   GBufferPass g_buffer_pass_;
@@ -37,6 +43,7 @@ class RealtimeMethod {
   RadianceCache cache_;
   ReconstructionPass reconstruction_pass_;
   ComposePass compose_pass_;
+  TemporalAntialiasingPass antialiasing_pass_;
   InstanceMotion motion_;
   SceneChanges changes_;
   SceneChange change_;  // in this frame

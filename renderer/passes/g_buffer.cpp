@@ -66,6 +66,7 @@ const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, co
                                 GBufferLayer layer) {
   buffer_.has_motion = motion && motion->moving();
   gl::Defines defines = gl::joined(gl::joined(scene.texture_defines(), scene.lobe_defines()), layer_defines(layer));
+  if (motion) defines.emplace_back("FILTER_SPECULAR 1");
   if (buffer_.has_motion) {
     scene.feed_instances_before(motion->instances());
     motion->bind();

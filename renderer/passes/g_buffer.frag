@@ -45,6 +45,18 @@ uniform uint frame_seed;
 layout(binding = UNIT_G_DEPTH) uniform sampler2D depth_behind;
 #endif
 
+#ifdef FILTER_SPECULAR
+// A roughness that holds the normals of the whole pixel, so that a glint smaller than a pixel is not as bright as if it
+// filled it (Tokuyoshi and Kaplanyan 2019).
+float filtered_roughness(float roughness, vec3 normal_ws) {
+  const vec3 across = dFdx(normal_ws), down = dFdy(normal_ws);
+  const float kPixelVariance = 0.25, kMost = 0.18;
+  const float spread = min(2.0 * kPixelVariance * (dot(across, across) + dot(down, down)), kMost);
+  const float alpha = roughness * roughness;
+  return sqrt(sqrt(min(alpha * alpha + spread, 1.0)));
+}
+#endif
+
 // Coverage as a threshold that changes from pixel to pixel and frame to frame: the mean of many frames is the blend.
 float coverage_threshold() { return unit_interval(hash(uvec3(gl_FragCoord.xy, frame_seed))); }
 
@@ -89,6 +101,9 @@ void main() {
   const bool unlit = (material.flags & kMaterialUnlit) != 0u;
   const vec3 base_color = unlit ? vec3(0.0) : clamp(surface.base_color.rgb, 0.0, 1.0);
   out_surface = pack_g_surface(surface.normal_ws, geometric_normal, base_color, clamp(surface.metallic, 0.0, 1.0));
+#ifdef FILTER_SPECULAR
+  surface.roughness = filtered_roughness(surface.roughness, at.normal_ws);
+#endif
   const uint roughness = uint(clamp(surface.roughness, 0.0, 1.0) * 65535.0 + 0.5);
   out_material = uvec2(material_index | (roughness << 16), packUnorm2x16(vec2(material.f0_dielectric, material.specular_factor)));
 #ifdef HAS_LOBES

@@ -32,8 +32,8 @@ class GBufferPass {
   void resize(glm::ivec2 size_px);
   const GBuffer& g_buffer() const { return buffer_; }
   /// The camera block must be bound. `seed` decides the coverage of blended surfaces. With `motion` the displacements
-  /// are drawn as well when something moves. For kClearAlone the depth of the layer behind must be bound as a
-  /// GBuffer's.
+  /// are drawn as well when something moves, and roughness holds the normals of the whole pixel. For kClearAlone the
+  /// depth of the layer behind must be bound as a GBuffer's.
   const GBuffer& run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion = nullptr,
                      GBufferLayer layer = GBufferLayer::kAll);
 

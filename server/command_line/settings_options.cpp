@@ -117,6 +117,8 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
   app.add_flag("--denoise,!--no-denoise", settings.denoise, "Smooth the indirect light within surfaces");
   app.add_flag("--multiple-scattering,!--no-multiple-scattering", settings.multiple_scattering,
                "Keep the light that bounces between the microfacets of rough surfaces");
+  app.add_flag("--temporal-antialiasing,!--no-temporal-antialiasing", settings.temporal_antialiasing,
+               "Smooth realtime's edges over its frames, along with what moves");
   add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
               "Start of the random sequence: the same seed gives the same picture");
 }
