@@ -13,6 +13,7 @@
 #include "renderer/passes/bindings.glsl"
 #include "renderer/passes/brdf_table.h"
 #include "renderer/passes/camera_block.h"
+#include "renderer/passes/history_view.h"
 #include "renderer/tracing/tracer.h"
 
 namespace lightwell {
@@ -68,7 +69,8 @@ class View : public RenderView {
 Method method_of(const Settings& settings) {
   const ViewKind view = settings.view;
   const bool of_light = view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
-  return of_light ? settings.method : Method::kThesis;
+  const bool of_history = settings.method == Method::kRealtime && settings.bounces > 0 && HistoryViewPass::shows(view);
+  return of_light || of_history ? settings.method : Method::kThesis;
 }
 
 std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {

@@ -25,7 +25,9 @@ enum class Estimator { kCorrected, kLiteral };
 enum class Similarity { kCorrected, kLiteral };
 /// Light: the picture, its parts, one bounce alone. Surfaces: albedo to normal-depth. The rest is of the indirect map's
 /// pixels: mean distance of the hits, one direction and its hit's distance, the patch, to which patch the pixel refers,
-/// how many candidates it has, and whether it refers to none. Values are VIEW_* in passes/bindings.glsl.
+/// how many candidates it has, and whether it refers to none. The last five are of `realtime`: frames in a pixel's
+/// history, how much its light varies and changes, its motion, its cell of the radiance cache. Values are VIEW_* in
+/// passes/bindings.glsl.
 enum class ViewKind {
   kFinal,
   kDirect,
@@ -42,7 +44,12 @@ enum class ViewKind {
   kPatch,
   kReference,
   kCandidates,
-  kUnmatched
+  kUnmatched,
+  kHistory,
+  kVariance,
+  kGradient,
+  kMotion,
+  kCacheCells
 };
 enum class ToneMap { kNeutral, kLinear };
 /// How `reference` finds lights that have a size: samples of the lights and rays that hit them, weighted together, or

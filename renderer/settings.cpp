@@ -19,7 +19,7 @@ constexpr Names<Method, 3> kMethods = {
 constexpr Names<Estimator, 2> kEstimators = {{{Estimator::kCorrected, "corrected"}, {Estimator::kLiteral, "literal"}}};
 constexpr Names<Similarity, 2> kSimilarities = {
     {{Similarity::kCorrected, "corrected"}, {Similarity::kLiteral, "literal"}}};
-constexpr Names<ViewKind, 16> kViews = {{{ViewKind::kFinal, "final"},
+constexpr Names<ViewKind, 21> kViews = {{{ViewKind::kFinal, "final"},
                                          {ViewKind::kDirect, "direct"},
                                          {ViewKind::kIndirect, "indirect"},
                                          {ViewKind::kAlbedo, "albedo"},
@@ -34,7 +34,12 @@ constexpr Names<ViewKind, 16> kViews = {{{ViewKind::kFinal, "final"},
                                          {ViewKind::kPatch, "patch"},
                                          {ViewKind::kReference, "reference-map"},
                                          {ViewKind::kCandidates, "candidates"},
-                                         {ViewKind::kUnmatched, "unmatched"}}};
+                                         {ViewKind::kUnmatched, "unmatched"},
+                                         {ViewKind::kHistory, "history"},
+                                         {ViewKind::kVariance, "variance"},
+                                         {ViewKind::kGradient, "gradient"},
+                                         {ViewKind::kMotion, "motion"},
+                                         {ViewKind::kCacheCells, "cache-cells"}}};
 constexpr Names<LightStrategy, 3> kLightStrategies = {
     {{LightStrategy::kBoth, "both"}, {LightStrategy::kLights, "lights"}, {LightStrategy::kRays, "rays"}}};
 constexpr Names<ToneMap, 2> kToneMaps = {{{ToneMap::kNeutral, "neutral"}, {ToneMap::kLinear, "linear"}}};
@@ -126,6 +131,10 @@ Status check_view(const Settings& settings) {
   if (settings.view == ViewKind::kBounce && (settings.view_index < 1 || settings.view_index > settings.bounces))
     return invalid_input("view-index", "there is no bounce " + std::to_string(settings.view_index) + " of " +
                                            std::to_string(settings.bounces));
+  const bool of_realtime = settings.view >= ViewKind::kHistory;
+  if (of_realtime && (settings.method != Method::kRealtime || settings.bounces == 0))
+    return invalid_input(
+        "view", "\"" + std::string(name_of(settings.view)) + "\" is of the method realtime, with one bounce or more");
   const bool of_direction = settings.view == ViewKind::kDirection || settings.view == ViewKind::kHitDistance ||
                             settings.view == ViewKind::kCandidates;
   if (of_direction && settings.view_index >= settings.samples)

@@ -14,7 +14,10 @@ const kViews = [
   ["occlusion-distance", "Mean distance of hits"], ["bounce", "One bounce"], ["direction", "One direction"],
   ["hit-distance", "Its distance to the hit"], ["candidates", "Its candidates"], ["patch", "Patches and seeds"],
   ["reference-map", "Reference map"], ["unmatched", "Unmatched pixels"],
+  ["history", "Frames in the history"], ["variance", "Variance"], ["gradient", "Change of light"],
+  ["motion", "Motion"], ["cache-cells", "Cells of the cache"],
 ];
+const kRealtimeViews = ["history", "variance", "gradient", "motion", "cache-cells"];
 const kDirectionViews = ["direction", "hit-distance", "candidates"];
 const kPatches = [1, 2, 4, 8, 16];
 const kTriangleGroups = [1, 2, 4, 8, 16, 32, 64];
@@ -159,10 +162,13 @@ export class Panel {
     ];
   }
 
-  /** What a choice of the method changes: a number of bounces that it does not know goes with the old one. */
+  /** What a choice of the method changes: bounces and views that it does not know go with the old one. */
   settings_for_method(method) {
-    const is_endless = this.model.settings.bounces === "inf" && method === "thesis";
-    return is_endless ? { method, bounces: kMostBounces } : { method };
+    const settings = this.model.settings;
+    const change = { method };
+    if (settings.bounces === "inf" && method === "thesis") change.bounces = kMostBounces;
+    if (kRealtimeViews.includes(settings.view) && method !== "realtime") change.view = "final";
+    return change;
   }
 
   bounces_slider() {

@@ -41,7 +41,8 @@ RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       cache_(shaders),
       reconstruction_pass_(shaders),
       compose_pass_(shaders),
-      antialiasing_pass_(shaders) {}
+      antialiasing_pass_(shaders),
+      history_view_pass_(shaders) {}
 
 const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, const PlacedCamera& camera,
                                       glm::vec2 jitter_px) {
@@ -63,8 +64,15 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   const glm::mat4 previous_clip_from_world = clip_from_world(frame_number_ > 0 ? previous_camera_ : camera);
   const ReconstructedMap indirect = indirect_light(frame, g_buffer, previous_clip_from_world);
   compose_pass_.resize(g_buffer.depth);
-  const Picture& composed = compose_pass_.run(frame.scene, g_buffer, direct, indirect, frame.settings,
-                                              frame.accumulate && !frame.settings.temporal_antialiasing);
+  const bool accumulate = frame.accumulate && !frame.settings.temporal_antialiasing;
+  const ViewKind view = frame.settings.view;
+  const Picture& composed =
+      HistoryViewPass::shows(view)
+          ? compose_pass_.show(
+                frame.scene, g_buffer,
+                history_view_pass_.run(g_buffer, frame.scene, indirect, cache_, previous_clip_from_world, view),
+                frame.settings, accumulate)
+          : compose_pass_.run(frame.scene, g_buffer, direct, indirect, frame.settings, accumulate);
   frame.timer.mark("compose");
   const bool unchanged =
       clip_from_world(camera) == previous_clip_from_world && !change_.moving && change_.light_share == 0.0f;

@@ -6,6 +6,7 @@
 #include "renderer/methods/frame_context.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/g_buffer.h"
+#include "renderer/passes/history_view.h"
 #include "renderer/passes/instance_motion.h"
 #include "renderer/passes/light_table.h"
 #include "renderer/passes/patch_samples.h"
@@ -44,6 +45,7 @@ class RealtimeMethod {
   ReconstructionPass reconstruction_pass_;
   ComposePass compose_pass_;
   TemporalAntialiasingPass antialiasing_pass_;
+  HistoryViewPass history_view_pass_;
   InstanceMotion motion_;
   SceneChanges changes_;
   SceneChange change_;  // in this frame

@@ -33,7 +33,10 @@ static_assert(is(ViewKind::kFinal, VIEW_FINAL) && is(ViewKind::kDirect, VIEW_DIR
               is(ViewKind::kNormalDepth, VIEW_NORMAL_DEPTH) && is(ViewKind::kBounce, VIEW_BOUNCE) &&
               is(ViewKind::kDirection, VIEW_DIRECTION) && is(ViewKind::kHitDistance, VIEW_HIT_DISTANCE) &&
               is(ViewKind::kPatch, VIEW_PATCH) && is(ViewKind::kReference, VIEW_REFERENCE) &&
-              is(ViewKind::kCandidates, VIEW_CANDIDATES) && is(ViewKind::kUnmatched, VIEW_UNMATCHED));
+              is(ViewKind::kCandidates, VIEW_CANDIDATES) && is(ViewKind::kUnmatched, VIEW_UNMATCHED) &&
+              is(ViewKind::kHistory, VIEW_HISTORY) && is(ViewKind::kVariance, VIEW_VARIANCE) &&
+              is(ViewKind::kGradient, VIEW_GRADIENT) && is(ViewKind::kMotion, VIEW_MOTION) &&
+              is(ViewKind::kCacheCells, VIEW_CACHE_CELLS));
 
 // How display.comp shows a view's values.
 int mapping_of(ViewKind view) {
@@ -159,6 +162,13 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   indirect.guide->bind(UNIT_GUIDE);
   return draw(gl::joined(scene.brdf_defines(), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"}), scene.environment_defines(),
               settings, accumulate);
+}
+
+const Picture& ComposePass::show(const DeviceScene& scene, const GBuffer& g_buffer, const gl::Texture& view_map,
+                                 const Settings& settings, bool accumulate) {
+  g_buffer.bind();
+  view_map.bind(UNIT_VIEW_MAP);
+  return draw({"AUXILIARY_VIEWS 1"}, scene.environment_defines(), settings, accumulate);
 }
 
 const Picture& ComposePass::draw(const gl::Defines& surfaces, const gl::Defines& background, const Settings& settings,

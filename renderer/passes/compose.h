@@ -61,6 +61,9 @@ class ComposePass {
   /// The same with direct light by traced shadow rays and a map that was scaled with its guide; a view of light.
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
                      const ReconstructedMap& indirect, const Settings& settings, bool accumulate);
+  /// One of the views that are not of light, from what is in `view_map`.
+  const Picture& show(const DeviceScene& scene, const GBuffer& g_buffer, const gl::Texture& view_map,
+                      const Settings& settings, bool accumulate);
   const Picture& picture() const { return picture_; }
 
  private:

@@ -88,7 +88,7 @@ ReconstructedMap ReconstructionPass::run(const GBuffer& g_buffer, const DeviceSc
 
 ReconstructedMap ReconstructionPass::nothing() const {
   scratch_[0].map.clear(glm::vec4(0.0f));
-  return {&scratch_[0].map, &now_.guide};
+  return {&scratch_[0].map, &now_.guide, &now_.map, &now_.moments};
 }
 
 ReconstructedMap ReconstructionPass::filter() {
@@ -107,7 +107,7 @@ ReconstructedMap ReconstructionPass::filter() {
     from = &to->map;
     to = to == &scratch_[0] ? &scratch_[1] : &scratch_[0];
   }
-  return {from, &now_.guide};
+  return {from, &now_.guide, &now_.map, &now_.moments};
 }
 
 }  // namespace lightwell

@@ -13,7 +13,9 @@ namespace lightwell {
 /// Light over directional albedo per texel, RGBA32F, a: 1 where there is a surface.
 struct ReconstructedMap {
   const gl::Texture* image = nullptr;
-  const gl::Texture* guide = nullptr;  // RGBA32UI: position, normal and roughness
+  const gl::Texture* guide = nullptr;       // RGBA32UI: position, normal and roughness
+  const gl::Texture* unfiltered = nullptr;  // RGBA32F; a: frames in it
+  const gl::Texture* moments = nullptr;     // RGBA32F, of luminance: first, second, first of late frames
 };
 
 class ReconstructionPass {

@@ -24,6 +24,7 @@ void expect_finite(const Scene& scene, const PlacedCamera& camera, Settings sett
   for (const Method method : kMethods)
     for (const ViewKind view : all_view_kinds()) {
       if (view == ViewKind::kBounce && settings.bounces == 0) continue;  // there is none to see
+      if (view >= ViewKind::kHistory && (method != Method::kRealtime || settings.bounces == 0)) continue;  // nor here
       settings.method = method;
       settings.view = view;
       settings.view_index = view == ViewKind::kBounce ? 1 : 0;

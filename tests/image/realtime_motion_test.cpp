@@ -89,6 +89,39 @@ TEST(RealtimeMotion, WhatMovesTakesItsHistoryAlong) {
   }
 }
 
+TEST(RealtimeViews, TellWhatIsKnown) {
+  const Scene still = room_with_card(Carrier::kNode, 0.0f), moved = room_with_card(Carrier::kNode, 0.05f);
+  constexpr int kFrames = 16;
+  const auto shown = [&](ViewKind view, bool moves) {
+    Settings settings = realtime_settings(view == ViewKind::kCacheCells ? 3 : 2);  // from 3 on the cache is asked
+    settings.view = view;
+    Film film(kInRoom, settings);
+    Scene scene = still;
+    for (int frame = 0; frame < kFrames - 1; ++frame) film.next(scene);
+    if (moves) scene.nodes = moved.nodes;
+    return film.next(scene);
+  };
+  EXPECT_NEAR(shown(ViewKind::kHistory, false).center().g, kFrames / 64.0, 1.0 / 64.0);
+  EXPECT_GT(shown(ViewKind::kHistory, true).center().g, 0.5f * kFrames / 64.0f) << "the history goes along";
+  EXPECT_NEAR(shown(ViewKind::kMotion, false).mean().r, 0.5f, 1e-4f);
+  EXPECT_GT(shown(ViewKind::kMotion, true).center().r, 0.505f) << "the card has moved to the right";
+  EXPECT_GT(shown(ViewKind::kVariance, false).mean().g, 0.0f);
+  EXPECT_LT(shown(ViewKind::kGradient, false).mean().g, 0.2f);
+  EXPECT_GT(shown(ViewKind::kCacheCells, false).mean().g, 0.2f);
+  EXPECT_LT(shown(ViewKind::kUnmatched, false).mean().g, 0.1f);
+}
+
+TEST(RealtimeViews, AreRefusedElsewhere) {
+  Settings settings = realtime_settings(1);
+  settings.view = ViewKind::kHistory;
+  EXPECT_TRUE(check_settings(settings, {32, 32}).ok());
+  settings.bounces = 0;
+  EXPECT_FALSE(check_settings(settings, {32, 32}).ok());
+  settings.bounces = 1;
+  settings.method = Method::kThesis;
+  EXPECT_FALSE(check_settings(settings, {32, 32}).ok());
+}
+
 struct Moving {
   const char* name;
   Scene scene;
