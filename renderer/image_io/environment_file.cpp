@@ -16,15 +16,11 @@ std::string pixel_name(std::size_t pixel, int width) {
 
 }  // namespace
 
-Result<std::shared_ptr<const ImageHdr>> read_environment(const std::filesystem::path& path) {
-  const Result<FloatImage> picture = read_image(path);
+Result<std::shared_ptr<const ImageHdr>> read_environment(const std::filesystem::path& path, std::uint64_t max_pixels) {
+  const Result<FloatImage> picture = read_image(path, max_pixels);
   if (!picture) return picture.error();
   const glm::ivec2 size_px = picture->size_px;
   const auto pixels = static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y);
-  if (pixels > kMaxEnvironmentPixels)
-    return Error{ErrorKind::kTooLarge, path.string(),
-                 "an environment of " + std::to_string(size_px.x) + " x " + std::to_string(size_px.y) +
-                     " pixels; at most " + std::to_string(kMaxEnvironmentPixels) + " are allowed"};
   auto image = std::make_shared<ImageHdr>();
   image->name = path.filename().string();
   image->size_px = size_px;

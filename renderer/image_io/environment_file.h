@@ -17,8 +17,9 @@ inline constexpr float kMaxEnvironmentRadiance = 1e9f;
 
 /// Reads a latitude-longitude picture (.exr, .hdr; others are decoded from sRGB), row 0 the zenith, its middle column
 /// towards -Z. Negative values, which filters leave behind in such files, become 0; anything that is not finite or
-/// above kMaxEnvironmentRadiance is kInvalidInput and named by its pixel.
-Result<std::shared_ptr<const ImageHdr>> read_environment(const std::filesystem::path& path);
+/// above kMaxEnvironmentRadiance is kInvalidInput and named by its pixel. More than `max_pixels` is kTooLarge.
+Result<std::shared_ptr<const ImageHdr>> read_environment(const std::filesystem::path& path,
+                                                         std::uint64_t max_pixels = kMaxEnvironmentPixels);
 
 /// What is given for a scene's environment; empty members leave the scene's own.
 struct EnvironmentChoice {

@@ -27,14 +27,14 @@ struct FloatImage {
   std::vector<float> pixels;
 };
 
-/// The most pixels read_image accepts.
+/// The most pixels read_image accepts unless told otherwise.
 inline constexpr std::uint64_t kMaxReadPixels = 16384ull * 16384;
 
-/// Reads any image file as linear floats: .exr and .hdr as they are, integer files decoded from sRGB. Grey is spread
-/// over RGB; channels beyond alpha are left out; alpha is as the file has it. NaN and infinities are kept, so that a
-/// comparison can find them: whoever needs finite values must look.
-/// A missing file is kNotFound, one of more than kMaxReadPixels is kTooLarge.
-Result<FloatImage> read_image(const std::filesystem::path& path);
+/// Reads an image file, of the format that its ending names, as linear floats: .exr and .hdr as they are, integer files
+/// decoded from sRGB. Grey is spread over RGB; channels beyond alpha are left out; alpha is as the file has it. NaN and
+/// infinities are kept, so that a comparison can find them: whoever needs finite values must look. A missing file is
+/// kNotFound, one of more than `max_pixels` is kTooLarge, before memory is taken for it.
+Result<FloatImage> read_image(const std::filesystem::path& path, std::uint64_t max_pixels = kMaxReadPixels);
 
 /// Writes scene-referred linear .exr (32-bit floats, or half by `float32`); metadata goes into the header as strings.
 /// The same picture and metadata give the same bytes: no time of writing is recorded.

@@ -5,6 +5,7 @@
 #include <exception>
 #include <memory>
 
+#include "renderer/image_io/exr_header.h"
 #include "renderer/image_io/image_io.h"
 
 namespace lightwell {
@@ -36,18 +37,21 @@ void decode_srgb(FloatImage& image) {
       image.pixels[pixel + channel] = linear_from_srgb(image.pixels[pixel + channel]);
 }
 
-Result<FloatImage> read(const std::string& file) {
+Result<FloatImage> read(const std::string& file, std::uint64_t max_pixels) {
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &wanted);
+  // The reader that the file's ending names, and no other: ImageInput::open would try every one there is, medical
+  // pictures and films among them, and some of these take gigabytes at the word of a few broken bytes.
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(file);
   if (!input) return invalid_input(file, "the image cannot be opened: " + OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
+  OIIO::ImageSpec spec;
+  if (!input->open(file, spec, wanted)) return invalid_input(file, "the image cannot be opened: " + input->geterror());
   if (spec.deep || spec.depth > 1 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
     return Error{ErrorKind::kUnsupported, file, "deep, volume and empty images cannot be read"};
-  if (static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height) > kMaxReadPixels)
+  if (static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height) > max_pixels)
     return Error{ErrorKind::kTooLarge, file,
                  "the image has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                     " pixels; at most " + std::to_string(kMaxReadPixels) + " are allowed"};
+                     " pixels; at most " + std::to_string(max_pixels) + " are allowed"};
 
   FloatImage image;
   image.size_px = {spec.width, spec.height};
@@ -64,12 +68,13 @@ Result<FloatImage> read(const std::string& file) {
 
 }  // namespace
 
-Result<FloatImage> read_image(const std::filesystem::path& path) {
+Result<FloatImage> read_image(const std::filesystem::path& path, std::uint64_t max_pixels) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return Error{ErrorKind::kNotFound, path.string(), "no such file"};
   if (!std::filesystem::is_regular_file(path, error)) return invalid_input(path.string(), "not a file");
   try {
-    return read(path.string());
+    if (const Status header = check_exr_header(path); !header) return header.error();
+    return read(path.string(), max_pixels);
   } catch (const std::exception& exception) {
     return invalid_input(path.string(), std::string("the image cannot be decoded: ") + exception.what());
   }

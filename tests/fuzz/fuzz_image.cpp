@@ -34,7 +34,7 @@ void read_environment_file(std::span<const std::byte> bytes, std::string_view en
   const auto path = folder / ("fuzz_image-" + std::to_string(::getpid()) + std::string(ending));
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  const auto image = read_environment(path);
+  const auto image = read_environment(path, kMostPixels);
   std::filesystem::remove(path);
   if (!image) return require(!image.error().what.empty());
   const glm::ivec2 size_px = (*image)->size_px;

@@ -10,9 +10,12 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 corpus=$folder/corpus/$name
 log=$folder/fuzz_$name.log
 mkdir -p "$corpus"
+# OpenEXR takes as much memory as a chunk of pixels says it has, in 32 bits, and gives it back at the file's end.
+memory_mb=2048
+[[ $name != image ]] || memory_mb=6144
 dictionary=()
 [[ ! -f $here/$name.dict ]] || dictionary=("-dict=$here/$name.dict")
-if "$program" -max_total_time="$seconds" -max_len=8192 -print_final_stats=1 "${dictionary[@]}" \
+if "$program" -max_total_time="$seconds" -max_len=8192 -rss_limit_mb="$memory_mb" -print_final_stats=1 "${dictionary[@]}" \
   -artifact_prefix="$folder/failed_$name-" "$corpus" "$here/seeds/$name" > "$log" 2>&1; then
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   echo "fuzz: $name held for $seconds s, $runs inputs" >&2

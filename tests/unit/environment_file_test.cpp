@@ -67,6 +67,33 @@ TEST_F(EnvironmentFile, WhatIsNoPictureIsRefused) {
   }
 }
 
+TEST_F(EnvironmentFile, WhatIsTooLargeIsRefusedByItsHeader) {
+  const std::filesystem::path path = exr({1, 2, 3, 4, 5, 6});
+  EXPECT_TRUE(read_environment(path, 2).ok());
+  const auto refused = read_environment(path, 1);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kTooLarge);
+  EXPECT_THAT(refused.error().what, HasSubstr("2 x 1"));
+
+  const std::filesystem::path large = folder_ / "large.hdr";  // with nothing behind its header
+  std::ofstream(large, std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 10000 +X 10000\n";
+  const auto too_large = read_environment(large);
+  ASSERT_FALSE(too_large.ok());
+  EXPECT_EQ(too_large.error().kind, ErrorKind::kTooLarge) << too_large.error().message();
+}
+
+TEST_F(EnvironmentFile, AnAttributeLongerThanItsFileIsRefused) {
+  const std::filesystem::path path = exr({1, 2, 3, 4, 5, 6});
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto size = bytes.find("box2i") + 6;  // of the window that follows
+  bytes.replace(size, 4, "\xff\xff\xff\x7f", 4);
+  std::ofstream(path, std::ios::binary) << bytes;
+  const auto refused = read_environment(path);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().what, HasSubstr("longer than the file"));
+}
+
 TEST_F(EnvironmentFile, AppliesWhatIsGivenAndNothingElse) {
   Environment environment;
   environment.zenith_radiance = glm::vec3(3.0f);
