@@ -137,7 +137,7 @@ struct Frame {
   std::uint32_t accumulated = 1;           // frames in this picture
   std::vector<StageTime> stages;
   double total_ms = 0.0;
-  std::uint64_t rays = 0;  // traced; those that candidates missed and that were traced anew are not counted
+  std::uint64_t rays = 0;  // traced, those among them that candidates missed and that were traced anew
   std::uint64_t triangles = 0;
 };
 

@@ -20,7 +20,7 @@ struct FrameContext {
   TriangleGroups& triangle_groups;  // to be updated by whom needs them
   const TraceScene& trace_scene;    // what the tracer was updated with
   gl::StageTimer& timer;
-  std::uint64_t rays = 0;  // traced in this frame, without those that candidates missed
+  std::uint64_t rays = 0;  // traced in this frame
 };
 
 }  // namespace lightwell

@@ -56,6 +56,14 @@ ThesisMethod::ThesisMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       clear_compose_pass_(shaders) {}
 
 const Picture& ThesisMethod::render(FrameContext& frame) {
+  const bool traces_anew = have_candidates(frame.settings) && frame.settings.trace_missed;
+  if (traces_anew) occlusion_.list.forget_traced();
+  const Picture& picture = render_layers(frame);
+  if (traces_anew) frame.rays += occlusion_.list.traced_anew();
+  return picture;
+}
+
+const Picture& ThesisMethod::render_layers(FrameContext& frame) {
   const IndirectMapGrid grid = make_grid(frame);
   resize(frame, grid);
   const bool clear = frame.scene.has_clear();

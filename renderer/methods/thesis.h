@@ -28,6 +28,7 @@ class ThesisMethod {
     const GBuffer& g_buffer;
     const gl::Texture& map;
   };
+  const Picture& render_layers(FrameContext& frame);
   void resize(const FrameContext& frame, const IndirectMapGrid& grid);
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);

@@ -13,6 +13,7 @@
 #define TRACE_BINDING_INSTANCES 12
 #define TRACE_BINDING_PIXELS 13
 #define TRACE_BINDING_DIRECTIONS 14
+#define TRACE_BINDING_TESTS 15
 
 #define TRACE_GROUP_SIZE 64
 // Levels of inner nodes, each of which may leave one entry on the traversal stack.

@@ -48,7 +48,10 @@ void main() {
       had_any = true;
       try_candidate(ray, candidate.instance, candidate.triangle * group_count + group, hit);
     }
-    if (had_any && hit.t == 1e30 && trace_missed == 1) hit = trace(ray);
+    if (had_any && hit.t == 1e30 && trace_missed == 1) {
+      hit = trace(ray);
+      atomicAdd(traced_anew, 1u);
+    }
   }
   const bool is_hit = hit.t < 1e30;
   hits[record] = is_hit ? hit : Hit(-1.0, 0u, 0u, 0.0, 0.0);

@@ -23,13 +23,22 @@ void finish_writing() {
                   GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
+// What a tracer does for all its rays.
+struct Way {
+  bool brute_force = false;
+  const gl::Buffer* tests = nullptr;  // where it counts them
+};
+
+std::vector<std::string> defines_of(bool any_hit, bool coverage, const Way& way) {
+  return {any_hit ? "ANY_HIT 1" : "ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0",
+          way.brute_force ? "BRUTE_FORCE 1" : "BRUTE_FORCE 0", way.tests ? "COUNT_TESTS 1" : "COUNT_TESTS 0"};
+}
+
 // One build of trace.comp.
 class TraceProgram {
  public:
-  TraceProgram(gl::ShaderLibrary& shaders, bool any_hit, bool coverage, bool brute_force)
-      : program_(shaders.compute("tracing/trace.comp",
-                                 {any_hit ? "ANY_HIT 1" : "ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0",
-                                  brute_force ? "BRUTE_FORCE 1" : "BRUTE_FORCE 0"})),
+  TraceProgram(gl::ShaderLibrary& shaders, bool any_hit, bool coverage, const Way& way)
+      : program_(shaders.compute("tracing/trace.comp", defines_of(any_hit, coverage, way))),
         lists_hits_(program_, "lists_hits"),
         ray_count_(program_, "ray_count"),
         top_root_(program_, "top_root"),
@@ -59,9 +68,8 @@ class TraceProgram {
 // One build of candidates.comp.
 class CandidateProgram {
  public:
-  CandidateProgram(gl::ShaderLibrary& shaders, bool coverage, bool brute_force)
-      : program_(shaders.compute("tracing/candidates.comp", {"ANY_HIT 0", coverage ? "COVERAGE 1" : "COVERAGE 0",
-                                                             brute_force ? "BRUTE_FORCE 1" : "BRUTE_FORCE 0"})),
+  CandidateProgram(gl::ShaderLibrary& shaders, bool coverage, const Way& way)
+      : program_(shaders.compute("tracing/candidates.comp", defines_of(false, coverage, way))),
         pixel_count_(program_, "pixel_count"),
         patch_count_(program_, "patch_count"),
         direction_count_(program_, "direction_count"),
@@ -99,39 +107,47 @@ class CandidateProgram {
 
 class ComputeTracer final : public Tracer {
  public:
-  explicit ComputeTracer(bool brute_force) : brute_force_(brute_force) {}
+  explicit ComputeTracer(const Way& way) : way_(way) {}
 
-  std::string_view name() const override { return brute_force_ ? "brute-force" : "compute"; }
+  std::string_view name() const override { return way_.brute_force ? "brute-force" : "compute"; }
 
   void update(const TraceScene& scene) override { hierarchies_.update(scene); }
 
   void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Ray), <=, rays.size_bytes());
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Hit), <=, hits.size_bytes());
+    bind_tests();
     (hierarchies_.needs_coverage() ? covered_closest_hit_ : closest_hit_).run(rays, count, hits, hierarchies_, list);
   }
 
   void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Ray), <=, rays.size_bytes());
     LIGHTWELL_CHECK_OP((std::uint64_t{count} + 31) / 32 * sizeof(std::uint32_t), <=, visible.size_bytes());
+    bind_tests();
     (hierarchies_.needs_coverage() ? covered_any_hit_ : any_hit_).run(rays, count, visible, hierarchies_);
   }
 
   void test_candidates(const CandidateTest& test, gl::Buffer& hits, HitList& list) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{test.pixel_count} * test.direction_count * sizeof(Hit), <=, hits.size_bytes());
     std::optional<CandidateProgram>& program = hierarchies_.needs_coverage() ? covered_candidates_ : candidates_;
-    if (!program) program.emplace(shaders_, hierarchies_.needs_coverage(), brute_force_);
+    if (!program) program.emplace(shaders_, hierarchies_.needs_coverage(), way_);
+    bind_tests();
     program->run(test, hits, hierarchies_, list);
   }
 
   std::uint64_t memory_bytes() const override { return hierarchies_.memory_bytes(); }
 
  private:
-  bool brute_force_;
+  // Where the programs find it.
+  void bind_tests() const {
+    if (way_.tests) way_.tests->bind_storage(TRACE_BINDING_TESTS);
+  }
+
+  Way way_;
   gl::ShaderLibrary shaders_;
-  TraceProgram closest_hit_{shaders_, false, false, brute_force_};
-  TraceProgram covered_closest_hit_{shaders_, false, true, brute_force_};
-  TraceProgram any_hit_{shaders_, true, false, brute_force_}, covered_any_hit_{shaders_, true, true, brute_force_};
+  TraceProgram closest_hit_{shaders_, false, false, way_};
+  TraceProgram covered_closest_hit_{shaders_, false, true, way_};
+  TraceProgram any_hit_{shaders_, true, false, way_}, covered_any_hit_{shaders_, true, true, way_};
   std::optional<CandidateProgram> candidates_, covered_candidates_;  // made when patches are first used
   DeviceHierarchies hierarchies_;
 };
@@ -139,11 +155,15 @@ class ComputeTracer final : public Tracer {
 }  // namespace
 
 std::unique_ptr<Tracer> make_compute_tracer() {
-  return std::make_unique<ComputeTracer>(false);
+  return std::make_unique<ComputeTracer>(Way{});
+}
+
+std::unique_ptr<Tracer> make_counting_tracer(bool brute_force, const gl::Buffer& tests) {
+  return std::make_unique<ComputeTracer>(Way{brute_force, &tests});
 }
 
 std::unique_ptr<Tracer> make_brute_force_tracer() {
-  return std::make_unique<ComputeTracer>(true);
+  return std::make_unique<ComputeTracer>(Way{true});
 }
 
 }  // namespace lightwell

@@ -48,8 +48,14 @@ struct HitList {
 
   gl::Buffer rays;                                 // uint32 each: indices of rays, in no particular order
   gl::BufferTexture texels{"hit list", GL_R32UI};  // the same
-  gl::Buffer
-      dispatch;  // uint32 x 4: groups of kHitGroup in x, 1, 1 (an indirect dispatch's arguments); the count of hits
+  // uint32 x 5: groups of kHitGroup in x, 1, 1 (an indirect dispatch's arguments); the count of hits; how many rays
+  // test_candidates has traced anew
+  gl::Buffer dispatch;
+
+  /// Rays that test_candidates has traced anew for this list since it was made or they were forgotten, modulo 2^32.
+  /// Waits for the device.
+  std::uint32_t traced_anew() const;
+  void forget_traced();
 };
 
 /// Where the rays of a pixel start, and which patch gives it directions and candidates; std430 layout, 32 bytes.
@@ -126,5 +132,9 @@ std::unique_ptr<Tracer> make_compute_tracer();
 /// The same without a hierarchy: every ray tries every triangle, as in the thesis' own implementation. What it costs is
 /// linear in both.
 std::unique_ptr<Tracer> make_brute_force_tracer();
+
+/// One of the two that counts as well: to the first word of `tests` it adds, modulo 2^32, how many triangles rays were
+/// tested against. Slower; `tests` must outlive it.
+std::unique_ptr<Tracer> make_counting_tracer(bool brute_force, const gl::Buffer& tests);
 
 }  // namespace lightwell

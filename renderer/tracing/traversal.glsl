@@ -1,6 +1,6 @@
 // Follows rays through the two levels of hierarchies: the top one over groups of instances, and each group's own.
 // Needs ray, and the defines: ANY_HIT 1 for visibility, 0 for nearest hits. COVERAGE 1 if some instance needs a coverage
-// test. BRUTE_FORCE 1 to try every triangle with every ray instead, whatever the hierarchies say.
+// test. COUNT_TESTS 1 to count the triangles that are tried. BRUTE_FORCE 1 to try every triangle with every ray instead, whatever the hierarchies say.
 #include "tracing/bindings.glsl"
 #include "tracing/triangle.glsl"
 #if COVERAGE
@@ -10,6 +10,10 @@
 layout(std430, binding = TRACE_BINDING_NODES) readonly buffer Nodes { uvec4 node_words[]; };              // BvhNode
 layout(std430, binding = TRACE_BINDING_TRIANGLES) readonly buffer Triangles { uvec4 triangle_words[]; };  // DeviceTriangle
 layout(std430, binding = TRACE_BINDING_GROUPS) readonly buffer Groups { uvec4 group_words[]; };           // DeviceGroup
+
+#if COUNT_TESTS
+layout(std430, binding = TRACE_BINDING_TESTS) buffer Tests { uint triangle_tests; };
+#endif
 
 const uint kNeedsCoverage = 0x80000000u;  // DeviceGroup: beside the count of its triangles
 
@@ -52,6 +56,9 @@ void test_leaf(LocalRay ray, uint first, uint count, uvec4 group, float t_min, i
     const uvec4 c = triangle_words[3u * i + 2u];
     float t;
     vec2 uv;
+#if COUNT_TESTS
+    atomicAdd(triangle_tests, 1u);
+#endif
     if (!hits_triangle(ray.origin, ray.direction, t_min, hit.t, uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz),
                        uintBitsToFloat(c.xyz), t, uv))
       continue;

@@ -34,9 +34,14 @@ std::string squared(int side_px) {
 
 struct Bench {
   const BenchThesisArguments& arguments;
-  Renderer renderer{{{arguments.device}, arguments.tracer, [] { return make_embree_tracer(); }}};
+  // One at a time: each has a context of its own.
+  std::unique_ptr<Renderer> renderer = make_renderer(arguments.tracer);
   ThesisBench found{};
   Progress progress{};
+
+  std::unique_ptr<Renderer> make_renderer(const std::string& tracer) const {
+    return std::make_unique<Renderer>(RendererOptions{{arguments.device}, tracer, [] { return make_embree_tracer(); }});
+  }
 
   struct Measurement {
     FrameCost first, median;
@@ -47,7 +52,7 @@ struct Bench {
   Result<Measurement> measure(const Scene& scene, const Settings& settings, const std::string& name) {
     const auto start = std::chrono::steady_clock::now();
     const double duration_s = animation_duration_s(scene);
-    const std::unique_ptr<RenderView> view = renderer.make_view();
+    const std::unique_ptr<RenderView> view = renderer->make_view();
     Measurement measurement;
     std::vector<FrameCost> costs;
     for (int number = 0; number <= arguments.most_frames; ++number) {
@@ -55,8 +60,8 @@ struct Bench {
       progress.show(name + (number == 0 ? ": warm-up"
                                         : ": frame " + std::to_string(number) + " of at most " +
                                               std::to_string(arguments.most_frames)));
-      const Result<Frame> frame =
-          renderer.render(scene, square_frame(scene, moment_s(number, duration_s), arguments.side_px, settings), *view);
+      const Result<Frame> frame = renderer->render(
+          scene, square_frame(scene, moment_s(number, duration_s), arguments.side_px, settings), *view);
       if (!frame) return frame.error();
       if (number == 0)
         measurement.first = cost_of(*frame);
@@ -83,8 +88,8 @@ struct Bench {
       other.triangle_groups = groups;
       FrameRequest request = square_frame(scene, 0.5 * animation_duration_s(scene), arguments.side_px, other);
       request.want_linear = true;
-      const std::unique_ptr<RenderView> view = renderer.make_view();
-      Result<Frame> frame = renderer.render(scene, request, *view);
+      const std::unique_ptr<RenderView> view = renderer->make_view();
+      Result<Frame> frame = renderer->render(scene, request, *view);
       if (!frame) return frame.error();
       return metrics::Picture{frame->size_px.x, frame->size_px.y, std::move(frame->linear_rgb)};
     };
@@ -126,9 +131,31 @@ struct Bench {
     return Done{};
   }
 
+  // One frame each, since the finest takes the better part of a minute; the coarsest is the warm-up of all.
+  Status measure_brute_force() {
+    renderer.reset();
+    renderer = make_renderer("brute-force");
+    const std::unique_ptr<RenderView> view = renderer->make_view();
+    const Settings settings = settings_for(kTerrainSamples, kTerrainIndirectSide_px);
+    int divisions = 1;
+    for (MeasuredTerrain& terrain : found.terrains) {
+      if (terrain.triangles > static_cast<std::uint64_t>(arguments.most_brute_triangles)) break;
+      progress.show("terrain of " + std::to_string(terrain.triangles) + " triangles, by brute force");
+      const Scene scene = make_tessellated_terrain(divisions);
+      for (int frames = divisions == 1 ? 2 : 1; frames > 0; --frames) {
+        const Result<Frame> frame =
+            renderer->render(scene, square_frame(scene, 0.0, arguments.side_px, settings), *view);
+        if (!frame) return frame.error();
+        terrain.brute_force = cost_of(*frame);
+      }
+      divisions *= 2;
+    }
+    return Done{};
+  }
+
   Status measure_all() {
-    found.device = renderer.context().device().gl_renderer;
-    found.tracer = renderer.tracer_name();
+    found.device = renderer->context().device().gl_renderer;
+    found.tracer = renderer->tracer_name();
     found.threads = std::thread::hardware_concurrency();
     found.side_px = arguments.side_px;
     found.bounces = arguments.settings.bounces;
@@ -140,6 +167,9 @@ struct Bench {
       if (kTerrainTriangles * divisions * divisions > arguments.most_triangles) break;
       if (const Status status = measure_terrain(divisions); !status) return status;
     }
+    found.most_brute_triangles = found.tracer == "brute-force" ? 0 : arguments.most_brute_triangles;
+    if (found.most_brute_triangles > 0 && !found.terrains.empty())
+      if (const Status status = measure_brute_force(); !status) return status;
     progress.clear();
     return Done{};
   }
@@ -172,6 +202,9 @@ void add_bench_thesis_options(CLI::App& app, BenchThesisArguments& arguments) {
              "Rows of tables 6.1 (1 to 18) and 6.2 (19 to 36), as in 1,4:6; or none", "all");
   add_integer(app, "--most-triangles", arguments.most_triangles, 0, 6'000'000,
               "The finest terrain of the cost against triangles; 0 leaves it out");
+  add_integer(
+      app, "--most-brute-triangles", arguments.most_brute_triangles, 0, 6'000'000,
+      "The finest of them that brute force is measured for as well, which takes time in proportion; 0 for none");
   add_integer(app, "--frames", arguments.most_frames, 1, 10'000, "Frames measured for each row, at most");
   add_parsed(
       app, "--budget", arguments.budget_s, [](const std::string& text) { return parse_number(text, 0.0, 1e6); },

@@ -23,7 +23,8 @@ inline Settings with_patches() {
 
 struct BenchThesisArguments {
   std::vector<PrintedRow> rows{printed_rows().begin(), printed_rows().end()};
-  int most_triangles = 1'500'000;  // of the terrain; 0: it is not measured
+  int most_triangles = 1'500'000;    // of the terrain; 0: it is not measured
+  int most_brute_triangles = 6'000;  // up to these brute force is measured as well; 0: not at all
   int side_px = kPrintedSide_px;
   int most_frames = 9;                 // per row
   double budget_s = 20.0;              // per row, with its warm-up; one frame is measured in any case

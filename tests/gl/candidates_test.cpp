@@ -137,7 +137,35 @@ class PatchWorld {
     std::uint32_t dispatch[4] = {};
     list.dispatch.download(std::as_writable_bytes(std::span(dispatch)));
     EXPECT_EQ(dispatch[3], std::count_if(hits.begin(), hits.end(), is_hit));
+    if (trace_missed) {
+      HitList printed_list(kUse);
+      printed_list.resize(kRecords);
+      tracer.test_candidates({pixels, along, candidates, kPixels, patches(side), kDirections, groups, false}, out,
+                             printed_list);
+      gl::wait_for_device();
+      EXPECT_EQ(printed_list.traced_anew(), 0u);
+      EXPECT_EQ(list.traced_anew(), missed_records(candidates, out, side, groups));
+    }
     return hits;
+  }
+
+  // Records without a hit whose patch has some candidate.
+  std::uint32_t missed_records(const gl::Buffer& candidates, const gl::Buffer& hits, std::uint32_t side,
+                               std::uint32_t groups) const {
+    constexpr std::uint32_t kPixels = kSide_px * kSide_px;
+    const std::uint32_t ray_count = patches(side) * kDirections;
+    std::vector<Hit> of_patches(std::size_t{ray_count} * groups), of_pixels(std::size_t{kPixels} * kDirections);
+    candidates.download(std::as_writable_bytes(std::span(of_patches)));
+    hits.download(std::as_writable_bytes(std::span(of_pixels)));
+    std::uint32_t missed = 0;
+    for (std::uint32_t record = 0; record < of_pixels.size(); ++record) {
+      const std::uint32_t ray = record / kPixels * patches(side) + patch_of(record % kPixels, side);
+      bool had_any = false;
+      for (std::uint32_t group = 0; group < groups; ++group)
+        had_any |= is_hit(of_patches[std::size_t{group} * ray_count + ray]);
+      missed += had_any && !is_hit(of_pixels[record]) ? 1 : 0;
+    }
+    return missed;
   }
 
   TraceWorld world_;

@@ -17,7 +17,7 @@ class BenchThesisTest(CommandLineTest):
 
     def test_rows_and_cost_as_text_json_and_plot(self):
         run = self.bench("--rows", "1,21", "--most-triangles", "6000", "--json", "b.json", "--plot", "b.svg")
-        for part in ["Table 6.1", "Table 6.2", "11.98", "8.53", "2 rows", "Cost against triangles", "5832"]:
+        for part in ["Table 6.1", "Table 6.2", "11.98", "8.53", "2 rows", "Cost against triangles", "5832", "by brute force"]:
             self.assertIn(part, run.stdout)
         found = json.loads((self.folder / "b.json").read_text())
         self.assertEqual([(1, 64), (21, 16)], [(row["row"], row["indirect_size"]) for row in found["rows"]])
@@ -31,7 +31,9 @@ class BenchThesisTest(CommandLineTest):
             self.assertIn("trace", [stage["name"] for stage in row["stages"]])
         self.assertEqual([1458, 5832], [one["triangles"] for one in found["cost_against_triangles"]])
         curves = xml.etree.ElementTree.parse(self.folder / "b.svg").findall(".//{*}polyline")
-        self.assertEqual(6, len(curves))
+        self.assertEqual(7, len(curves))
+        brute_force = [one["brute_force"] for one in found["cost_against_triangles"]]
+        self.assertTrue(all(one["tracing_ms"] > 0 for one in brute_force))
 
     def test_a_spent_budget_leaves_one_frame(self):
         self.bench("--rows", "3", "--most-triangles", "0", "--budget", "0", "--json", "b.json")

@@ -117,6 +117,20 @@ TEST(BenchReport, TextHoldsRowsSummaryAndCost) {
   EXPECT_TRUE(std::regex_search(text, std::regex("\n *5832 +100 +1.25 "))) << text;
 }
 
+TEST(BenchReport, BruteForceStandsBesideTheHierarchy) {
+  ThesisBench bench = example();
+  EXPECT_EQ(text_report(bench).find("brute force"), std::string::npos);
+  bench.most_brute_triangles = 2000;
+  bench.terrains[0].brute_force = FrameCost{900.0, {{"trace", 700.0}, {"candidates", 100.0}}, 500'000};
+  const std::string text = text_report(bench);
+  EXPECT_THAT(text, HasSubstr("up to 2000 triangles (--most-brute-triangles)"));
+  EXPECT_TRUE(std::regex_search(text, std::regex("\n *1458 .* 20.0 +800 +1.00 "))) << text;
+  EXPECT_TRUE(std::regex_search(text, std::regex("\n *5832 .* - +- "))) << text;
+  const nlohmann::json json = json_report(bench);
+  EXPECT_EQ(json["cost_against_triangles"][0]["brute_force"]["tracing_ms"], 800.0);
+  EXPECT_FALSE(json["cost_against_triangles"][1].contains("brute_force"));
+}
+
 TEST(BenchReport, AnotherSizeIsSaidToBeUnlike) {
   ThesisBench bench = example();
   EXPECT_EQ(text_report(bench).find("unlike"), std::string::npos);

@@ -178,6 +178,7 @@ class Chunk {
 
   void trace_missed() {
     missed_.intersect(scene_);
+    list_.count_traced_anew(missed_.size());
     for (int lane = 0; lane < missed_.size(); ++lane) {
       const Hit hit = missed_.hit(lane, scene_);
       mapped_.hits[missed_.ray(lane)] = hit;

@@ -129,6 +129,7 @@ class EmbreeTracer final : public Tracer {
       else
         lightwell::test_candidates<4>(scene_, mapped, writer, begin, end);
     });
+    host_of<std::uint32_t>(list.dispatch)[4] += writer.traced_anew();
     finish(list, writer.count());
   }
 

@@ -144,9 +144,12 @@ class HitListWriter {
   }
   std::uint32_t count() const { return count_; }
 
+  void count_traced_anew(int rays) { traced_anew_ += static_cast<std::uint32_t>(rays); }
+  std::uint32_t traced_anew() const { return traced_anew_; }
+
  private:
   std::uint32_t* rays_;
-  std::atomic<std::uint32_t> count_ = 0;
+  std::atomic<std::uint32_t> count_ = 0, traced_anew_ = 0;
 };
 
 }  // namespace lightwell

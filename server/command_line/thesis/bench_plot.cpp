@@ -54,13 +54,16 @@ std::vector<Plot> plots_of(const ThesisBench& bench) {
   if (bench.terrains.empty()) return plots;
   Plot cost{"Cost against triangles", "triangles", "milliseconds a frame", {1e3, 1e4, 1e5, 1e6, 1e7}, {}};
   PlotCurve frame{"frame", kColors[0], false, {}}, trace{"of it: trace", kColors[1], false, {}};
+  PlotCurve brute_force{"tracing by brute force", kColors[2], false, {}};
   for (const MeasuredTerrain& terrain : bench.terrains) {
     const auto triangles = static_cast<double>(terrain.triangles);
     frame.points.emplace_back(triangles, terrain.median.ms);
+    if (terrain.brute_force) brute_force.points.emplace_back(triangles, tracing_ms(*terrain.brute_force));
     for (const StageCost& stage : terrain.median.stages)
       if (stage.name == "trace" && stage.ms > 0.0) trace.points.emplace_back(triangles, stage.ms);
   }
   cost.curves = {std::move(frame), std::move(trace)};
+  if (!brute_force.points.empty()) cost.curves.push_back(std::move(brute_force));
   plots.push_back(std::move(cost));
   return plots;
 }

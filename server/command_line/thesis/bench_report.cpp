@@ -79,20 +79,34 @@ std::string summary(const ThesisBench& bench) {
   return text;
 }
 
+void add_brute_force(std::vector<std::string>& line, const MeasuredTerrain& terrain, const MeasuredTerrain& least) {
+  line.push_back(figure(tracing_ms(terrain.median)));
+  line.push_back(terrain.brute_force ? figure(tracing_ms(*terrain.brute_force)) : "-");
+  const bool comparable = terrain.brute_force && least.brute_force && tracing_ms(*least.brute_force) > 0.0;
+  line.push_back(comparable ? number(tracing_ms(*terrain.brute_force) / tracing_ms(*least.brute_force), 2) : "-");
+}
+
 std::string terrain_table(const ThesisBench& bench) {
   if (bench.terrains.empty()) return "";
   const std::vector<std::string> stages = stage_names(bench.terrains);
+  const bool brute_force = bench.most_brute_triangles > 0;
   Lines lines = {{"triangles", "frame ms", "cost", "traced M/s", "frames", "first frame ms"}};
+  if (brute_force) lines[0].insert(lines[0].end(), {"tracing ms", "by brute force", "cost"});
   lines[0].insert(lines[0].end(), stages.begin(), stages.end());
   for (const MeasuredTerrain& terrain : bench.terrains) {
     lines.push_back({std::to_string(terrain.triangles), figure(terrain.median.ms),
                      number(terrain.median.ms / bench.terrains.front().median.ms, 2),
                      figure(terrain.rays_traced_per_s() / 1e6), std::to_string(terrain.frames),
                      figure(terrain.first_frame_ms)});
+    if (brute_force) add_brute_force(lines.back(), terrain, bench.terrains.front());
     add_stages(lines.back(), stages, terrain.median);
   }
   return "\nCost against triangles: one terrain, divided ever finer; " + std::to_string(bench.terrain_samples) +
-         " samples, indirect " + square(bench.terrain_indirect_side_px) + "; medians, stages in ms\n" + aligned(lines);
+         " samples, indirect " + square(bench.terrain_indirect_side_px) + "; medians, stages in ms\n" +
+         (brute_force ? "brute force: every ray tries every triangle, one frame each, up to " +
+                            std::to_string(bench.most_brute_triangles) + " triangles (--most-brute-triangles)\n"
+                      : "") +
+         aligned(lines);
 }
 
 nlohmann::json stages_json(const FrameCost& cost) {
@@ -146,7 +160,7 @@ std::string text_report(const ThesisBench& bench) {
 nlohmann::json json_report(const ThesisBench& bench) {
   nlohmann::json rows = nlohmann::json::array(), terrains = nlohmann::json::array();
   for (const MeasuredRow& row : bench.rows) rows.push_back(row_json(row));
-  for (const MeasuredTerrain& terrain : bench.terrains)
+  for (const MeasuredTerrain& terrain : bench.terrains) {
     terrains.push_back({{"triangles", terrain.triangles},
                         {"samples", bench.terrain_samples},
                         {"indirect_size", bench.terrain_indirect_side_px},
@@ -155,6 +169,11 @@ nlohmann::json json_report(const ThesisBench& bench) {
                         {"first_frame_ms", terrain.first_frame_ms},
                         {"rays_traced_per_s", terrain.rays_traced_per_s()},
                         {"stages", stages_json(terrain.median)}});
+    if (terrain.brute_force)
+      terrains.back()["brute_force"] = {{"frame_ms", terrain.brute_force->ms},
+                                        {"tracing_ms", tracing_ms(*terrain.brute_force)},
+                                        {"stages", stages_json(*terrain.brute_force)}};
+  }
   return {{"device", bench.device},
           {"tracer", bench.tracer},
           {"threads", bench.threads},

@@ -59,6 +59,10 @@ double moment_s(int frame, double duration_s) {
   return phase * duration_s;
 }
 
+double tracing_ms(const FrameCost& cost) {
+  return ms_of_stage(cost, "trace") + ms_of_stage(cost, "candidates");
+}
+
 double MeasuredRow::rays_resolved_per_s() const {
   return per_second(static_cast<double>(indirect_side_px) * indirect_side_px * printed.samples, median.ms);
 }

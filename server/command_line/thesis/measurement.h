@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,9 +54,14 @@ struct MeasuredTerrain {
   double first_frame_ms = 0.0;  // with the hierarchies' building and all uploads
   FrameCost median;
   int frames = 0;
+  std::optional<FrameCost> brute_force =
+      {};  // the same frame with every ray trying every triangle, where it was measured
 
   double rays_traced_per_s() const;
 };
+
+/// What finding the hits takes of a frame: the stages of tracing and of the candidates, in ms.
+double tracing_ms(const FrameCost& cost);
 
 /// Everything that `lightwell bench thesis` found.
 struct ThesisBench {
@@ -67,6 +73,7 @@ struct ThesisBench {
   int terrain_samples = 0, terrain_indirect_side_px = 0;
   std::vector<MeasuredTerrain> terrains;  // by rising count of triangles
   int patch = 1, triangle_groups = 1;
+  int most_brute_triangles = 0;  // up to which brute force was measured as well; 0: not at all
 };
 
 }  // namespace lightwell
