@@ -87,6 +87,9 @@ void RenderReport::renderer_started(Renderer& renderer) {
 }
 
 void RenderReport::add_picture(const std::string& file, double time_s, const Frame& frame) {
+  ++pictures_;
+  total_ms_ += frame.total_ms;
+  if (!arguments_.json) return;  // ten thousand frames would fill tens of megabytes for nobody
   nlohmann::json stages = nlohmann::json::array();
   for (const StageTime& stage : frame.stages) stages.push_back({{"name", stage.name}, {"ms", stage.ms}});
   json_["pictures"].push_back({{"file", file},
@@ -104,11 +107,8 @@ void RenderReport::print() const {
     std::printf("%s\n", json_.dump(2).c_str());
     return;
   }
-  const nlohmann::json& pictures = json_.at("pictures");
-  double total_ms = 0.0;
-  for (const nlohmann::json& picture : pictures) total_ms += picture.at("total_ms").get<double>();
-  std::fprintf(stderr, "lightwell: %zu picture%s of %dx%d in %.1f ms: %s (%s, tracer %s)\n", pictures.size(),
-               pictures.size() == 1 ? "" : "s", arguments_.size_px.x, arguments_.size_px.y, total_ms,
+  std::fprintf(stderr, "lightwell: %zu picture%s of %dx%d in %.1f ms: %s (%s, tracer %s)\n", pictures_,
+               pictures_ == 1 ? "" : "s", arguments_.size_px.x, arguments_.size_px.y, total_ms_,
                arguments_.output.c_str(), json_.at("device").at("gl_renderer").get<std::string>().c_str(),
                json_.at("tracer").get<std::string>().c_str());
 }

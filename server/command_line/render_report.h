@@ -44,6 +44,8 @@ class RenderReport {
   const RenderArguments& arguments_;
   std::chrono::steady_clock::time_point last_;
   nlohmann::json json_;
+  std::size_t pictures_ = 0;
+  double total_ms_ = 0.0;
 };
 
 }  // namespace lightwell

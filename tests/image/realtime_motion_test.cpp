@@ -1,9 +1,11 @@
 // The realtime method while everything moves: what moves takes its history along, and every frame is near to
 // `reference` at the same moment.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 
 #include "renderer/image_metrics/compare.h"
@@ -120,6 +122,33 @@ TEST(RealtimeViews, AreRefusedElsewhere) {
   settings.bounces = 1;
   settings.method = Method::kThesis;
   EXPECT_FALSE(check_settings(settings, {32, 32}).ok());
+}
+
+/// Resident memory of this process, bytes; 0 where /proc does not tell.
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0.0, resident = 0.0;
+  file >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(RealtimeMotion, MemoryDoesNotGrowWithTheFrames) {
+  constexpr int kFirst = 300, kCounted = 900;
+  constexpr double kMostPerFrame = 512.0;  // bytes: 5 MB over ten thousand frames
+  const Scene scene = builtin_scene("helicopters").value();
+  Settings settings = realtime_settings(3);
+  settings.samples = 16;
+  settings.indirect_size = 16;
+  Film film(kInRoom, settings, {16, 16});
+  double before = 0.0;
+  for (int frame = 0; frame < kFirst + kCounted; ++frame) {
+    if (frame == kFirst) before = resident_bytes();
+    film.request().time_s = frame / 30.0;
+    film.next(scene);
+  }
+  const double grown = (resident_bytes() - before) / kCounted;
+  std::printf("memory grows by %.0f bytes a frame\n", grown);
+  EXPECT_LT(grown, kMostPerFrame);
 }
 
 struct Moving {
