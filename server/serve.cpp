@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "renderer/image_io/image_io.h"
 #include "server/running_server.h"
 
 namespace lightwell {
@@ -74,6 +75,8 @@ void run(const ServeOptions& options, const StopSignals& signals) {
             {{"seconds", took.count()}, {"device", facts.device}, {"why", facts.device_why}, {"tracer", facts.tracer}});
   fmt::print("Lightwell is at {}\n", server.url());
   std::fflush(stdout);
+  if (const Status loaded = load_image_codecs(); !loaded)  // before somebody waits for it
+    log_event(LogLevel::kError, "no_image_files", {{"why", loaded.error().message()}});
   if (!signalled) signals.wait();
   signals.give_back();  // who asks twice does not want to wait
   log_event(LogLevel::kInfo, "stopping", {{"drain_delay_s", options.drain_delay_s}});

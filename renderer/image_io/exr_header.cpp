@@ -50,8 +50,9 @@ Status check_exr_header(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (read_u32(file) != kMagic) return Done{};
   const auto version = read_u32(file);
-  const std::uint64_t file_bytes = std::filesystem::file_size(path);
-  bool good = version.has_value();
+  std::error_code gone;
+  const std::uint64_t file_bytes = std::filesystem::file_size(path, gone);
+  bool good = version.has_value() && !gone;
   for (std::size_t attributes = 1; good && attributes > 0;) {
     good = pass_over_header(file, file_bytes, attributes);
     if (good && (*version & kMultiPart) == 0) break;  // else an empty header is the last

@@ -14,6 +14,11 @@
 
 namespace lightwell {
 
+/// Loads OpenImageIO, which the first of these functions would do otherwise: a third of a second in which other threads
+/// cannot do much either, for the loader's lock is held while what is thread-local is looked up anew. Thread-safe.
+/// kInternal names what is missing.
+Status load_image_codecs();
+
 /// Decodes a PNG or JPEG, the two formats of glTF, from memory to RGBA8: grey is spread over RGB, what has no alpha is
 /// opaque, alpha stays straight (colours are not multiplied by it), 16 bits become 8, CMYK becomes RGB. The size is
 /// read from the file's own header and refused with kTooLarge above `max_pixels` before anything is decoded.

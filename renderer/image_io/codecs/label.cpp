@@ -1,9 +1,9 @@
-#include "renderer/image_io/label.h"
-
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 
-namespace lightwell {
+#include "renderer/image_io/codecs/codecs.h"
+
+namespace lightwell::codecs {
 
 namespace {
 
@@ -39,4 +39,4 @@ Status draw_label(std::span<std::uint8_t> rgb, glm::ivec2 size_px, glm::ivec2 ba
   return no_font();
 }
 
-}  // namespace lightwell
+}  // namespace lightwell::codecs

@@ -2,15 +2,12 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <exception>
-#include <fstream>
 #include <memory>
 
-#include "renderer/image_io/image_io.h"
+#include "renderer/image_io/codecs/codecs.h"
 
-namespace lightwell {
+namespace lightwell::codecs {
 namespace {
 
 Status check_size(glm::ivec2 size_px, int channels, std::size_t values) {
@@ -53,14 +50,6 @@ OIIO::ImageSpec exr_spec(glm::ivec2 size_px, int channels, const std::map<std::s
   spec.attribute("DateTime", "1970:01:01 00:00:00");
   for (const auto& [key, value] : metadata) spec.attribute(key, value);
   return spec;
-}
-
-Status write_file(const std::filesystem::path& path, const std::vector<std::byte>& bytes) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) return invalid_input(path.string(), std::string("cannot be written: ") + std::strerror(errno));
-  return Done{};
 }
 
 }  // namespace
@@ -108,22 +97,4 @@ Result<std::vector<std::byte>> encode_ldr(const std::string& format, glm::ivec2 
   return encode(jpeg ? "jpeg" : "png", format, std::move(spec), OIIO::TypeDesc::UINT8, rgb.data());
 }
 
-Status write_exr(const std::filesystem::path& path, const FloatImage& image,
-                 const std::map<std::string, std::string>& metadata, bool float32) {
-  const Result<std::vector<std::byte>> encoded = encode_exr(image, metadata, float32);
-  if (!encoded) return encoded.error();
-  return write_file(path, *encoded);
-}
-
-Status write_ldr(const std::filesystem::path& path, glm::ivec2 size_px, std::span<const std::uint8_t> rgb,
-                 int jpeg_quality) {
-  std::string format = path.extension().string();
-  if (!format.empty()) format.erase(0, 1);
-  std::transform(format.begin(), format.end(), format.begin(),
-                 [](char letter) { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter; });
-  Result<std::vector<std::byte>> encoded = encode_ldr(format, size_px, rgb, jpeg_quality);
-  if (!encoded) return encoded.error();
-  return write_file(path, *encoded);
-}
-
-}  // namespace lightwell
+}  // namespace lightwell::codecs

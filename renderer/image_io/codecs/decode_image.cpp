@@ -4,10 +4,9 @@
 #include <exception>
 #include <memory>
 
-#include "renderer/image_io/encoded_image.h"
-#include "renderer/image_io/image_io.h"
+#include "renderer/image_io/codecs/codecs.h"
 
-namespace lightwell {
+namespace lightwell::codecs {
 namespace {
 
 constexpr std::size_t kRgba = 4;
@@ -51,19 +50,12 @@ Result<Image> decode(std::span<const std::byte> bytes, const EncodedImage& encod
 
 }  // namespace
 
-Result<Image> decode_image(std::span<const std::byte> bytes, std::uint64_t max_pixels) {
-  const Result<EncodedImage> encoded = inspect_image(bytes);
-  if (!encoded) return encoded.error();
-  const std::uint64_t pixels = std::uint64_t{encoded->width_px} * encoded->height_px;
-  if (pixels > max_pixels)
-    return Error{ErrorKind::kTooLarge, "",
-                 "the image has " + std::to_string(encoded->width_px) + " x " + std::to_string(encoded->height_px) +
-                     " pixels; at most " + std::to_string(max_pixels) + " are allowed"};
+Result<Image> decode_image(std::span<const std::byte> bytes, const EncodedImage& encoded) {
   try {
-    return decode(bytes, *encoded);
+    return decode(bytes, encoded);
   } catch (const std::exception& exception) {
     return invalid_input("", std::string("the image cannot be decoded: ") + exception.what());
   }
 }
 
-}  // namespace lightwell
+}  // namespace lightwell::codecs

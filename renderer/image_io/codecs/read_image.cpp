@@ -5,10 +5,9 @@
 #include <exception>
 #include <memory>
 
-#include "renderer/image_io/exr_header.h"
-#include "renderer/image_io/image_io.h"
+#include "renderer/image_io/codecs/codecs.h"
 
-namespace lightwell {
+namespace lightwell::codecs {
 namespace {
 
 // IEC 61966-2-1.
@@ -73,11 +72,10 @@ Result<FloatImage> read_image(const std::filesystem::path& path, std::uint64_t m
   if (!std::filesystem::exists(path, error)) return Error{ErrorKind::kNotFound, path.string(), "no such file"};
   if (!std::filesystem::is_regular_file(path, error)) return invalid_input(path.string(), "not a file");
   try {
-    if (const Status header = check_exr_header(path); !header) return header.error();
     return read(path.string(), max_pixels);
   } catch (const std::exception& exception) {
     return invalid_input(path.string(), std::string("the image cannot be decoded: ") + exception.what());
   }
 }
 
-}  // namespace lightwell
+}  // namespace lightwell::codecs
