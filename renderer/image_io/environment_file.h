@@ -26,6 +26,9 @@ struct EnvironmentChoice {
   std::string file;
   std::optional<float> rotation;  // radians about +Y
   std::optional<float> strength;  // 0 or more
+
+  /// Whether all but the scene's own light is asked away: then it gets no default light either.
+  bool is_dark() const { return strength == 0.0f; }
 };
 
 /// Changes the scene's environment; the scene stays as it is where the file is refused.

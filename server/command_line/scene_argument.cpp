@@ -29,8 +29,10 @@ Result<Scene> load_scene_argument(const std::string& name, const EnvironmentChoi
   for (const std::string& warning : scene->warnings)
     std::fprintf(stderr, "lightwell: %s: warning: %s\n", name.c_str(), warning.c_str());
   if (const Status applied = apply_environment(environment, scene->environment); !applied) return applied.error();
-  if (add_default_light(*scene))
-    std::fprintf(stderr, "lightwell: %s brings no light; a soft sky and a sun were added\n", name.c_str());
+  if (!environment.is_dark() && add_default_light(*scene))
+    std::fprintf(stderr, "lightwell: %s %s (--environment-strength 0 leaves it as it is)\n", name.c_str(),
+                 scene->lights.empty() ? "has no light but what glows in it; a faint sky was added"
+                                       : "brings no light; a soft sky and a sun were added");
   return scene;
 }
 

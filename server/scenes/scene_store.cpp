@@ -60,7 +60,7 @@ Result<std::string> SceneStore::add_from_command_line(const std::string& scene, 
   std::string name = scene_name_of(scene);
   const std::vector<std::string>& builtin = builtin_scene_names();
   if (std::find(builtin.begin(), builtin.end(), name) != builtin.end()) name = name.substr(0, 59) + "-file";
-  auto stage = stage_upload(std::move(loaded).value(), name);
+  auto stage = stage_upload(std::move(loaded).value(), name, !environment.is_dark());
   Entry entry{stage->entry(name, false), stage, nullptr};
   std::lock_guard lock(mutex_);
   scenes_.insert_or_assign(name, std::move(entry));
@@ -156,10 +156,10 @@ std::vector<protocol::SceneEntry> SceneStore::entries() const {
   return entries;
 }
 
-std::shared_ptr<const StagedScene> stage_upload(Scene scene, const std::string& name) {
+std::shared_ptr<const StagedScene> stage_upload(Scene scene, const std::string& name, bool default_light) {
   for (const std::string& warning : scene.warnings)
     log_event(LogLevel::kWarning, "scene_warning", {{"scene", name}, {"warning", warning}});
-  if (add_default_light(scene)) log_event(LogLevel::kInfo, "default_light_added", {{"scene", name}});
+  if (default_light && add_default_light(scene)) log_event(LogLevel::kInfo, "default_light_added", {{"scene", name}});
   return std::make_shared<const StagedScene>(std::move(scene));
 }
 
