@@ -13,11 +13,8 @@
 #define BINDING_PATH_RAYS 0
 #define BINDING_PATH_SHADOW_RAYS 1
 #define BINDING_PATH_STATES 2
-#define BINDING_PATH_PIXELS 3
 #define BINDING_PATH_PENDING 4
 #define BINDING_PATH_RADIANCE 5
-#define BINDING_PATH_SLOTS 6
-#define BINDING_PATH_COUNTS 7
 
 #define BINDING_SAMPLE_RAYS 0
 #define BINDING_SAMPLE_SHADOW_RAYS 1
@@ -66,8 +63,6 @@
 #define UNIT_LIGHT_CHOICES 33
 #define UNIT_INSTANCE_LIGHTS 34
 #define UNIT_PATH_STATES 35
-#define UNIT_PATH_PIXELS 36
-#define UNIT_PATH_SLOTS 37
 #define UNIT_PATH_PENDING 38
 #define UNIT_PATH_RADIANCE 39
 #define UNIT_PATH_VISIBLE 40
@@ -123,6 +118,3 @@
 
 // Of clear surfaces one behind the other, so many let light through; the next is as if opaque.
 #define MOST_CLEAR_SURFACES 8
-
-// Slots that one invocation of path_resolve.comp and path_compact.comp looks after.
-#define PATH_CHUNK 64

@@ -9,11 +9,10 @@ layout(local_size_x = 64) in;
 #include "shaders/ray.glsl"
 #include "shaders/path.glsl"
 
-layout(std430, binding = BINDING_PATH_RAYS) writeonly buffer Rays { Ray rays[]; };
+layout(std430, binding = BINDING_PATH_RAYS) writeonly buffer Rays { vec4 rays[]; };  // 2 a ray
 layout(std430, binding = BINDING_PATH_STATES) writeonly buffer States { vec4 states[]; };
-layout(std430, binding = BINDING_PATH_PIXELS) writeonly buffer Pixels { uint paths[]; };
+layout(std430, binding = BINDING_PATH_PENDING) writeonly buffer Pending { uvec4 pending[]; };
 layout(std430, binding = BINDING_PATH_RADIANCE) writeonly buffer Radiance { vec4 radiance[]; };
-layout(std430, binding = BINDING_PATH_SLOTS) writeonly buffer Slots { uint slots[]; };
 
 uniform uint path_count;
 
@@ -30,9 +29,9 @@ void main() {
   // Nothing nearer than the near plane is seen, as in the G-buffer.
   ray.t_min = camera.right_ws.w * (perspective ? length(toward) : 1.0);
   ray.t_max = perspective ? 1e30 : camera.down_ws.w;
-  rays[index] = ray;
+  rays[2u * index] = vec4(ray.origin_ws, ray.t_min);
+  rays[2u * index + 1u] = vec4(ray.direction_ws, ray.t_max);
   states[index] = vec4(1.0, 1.0, 1.0, 0.0);
-  paths[index] = pack_path(index, 0u, 0u);
+  pending[index] = uvec4(0u, 0u, 0u, pack_path(index, 0u, 0u));
   radiance[index] = vec4(0.0);
-  slots[index] = index;
 }

@@ -1,6 +1,7 @@
 #include "renderer/passes/path_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <utility>
 
@@ -12,7 +13,7 @@ namespace {
 
 // Paths in flight. A software device keeps what they carry in its caches; a GPU must have many to hide its latencies.
 constexpr std::uint32_t kPathsOnHost = 1u << 16;
-constexpr std::uint32_t kPathsOnDevice = 1u << 20;  // as many as a path's word can name
+constexpr std::uint32_t kPathsOnDevice = 1u << 19;  // as many as a path's word can name
 
 constexpr GLbitfield kBetweenStages = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 
@@ -52,37 +53,44 @@ struct Carried {
   Carried(gl::BufferUse use, std::uint32_t paths)
       : rays("path rays", std::uint64_t{paths} * sizeof(Ray), use),
         states("path states", std::uint64_t{paths} * sizeof(glm::vec4)),
-        pixels("path pixels", std::uint64_t{paths} * sizeof(std::uint32_t)),
+        pending("pending light", std::uint64_t{paths} * sizeof(glm::uvec4)),
         ray_texels("path rays", GL_RGBA32F),
         state_texels("path states", GL_RGBA32F),
-        pixel_texels("path pixels", GL_R32UI) {
+        pending_texels("pending light", GL_RGBA32UI) {
     ray_texels.attach(rays);
     state_texels.attach(states);
-    pixel_texels.attach(pixels);
+    pending_texels.attach(pending);
   }
   void bind_for_writing() const {
     rays.bind_storage(BINDING_PATH_RAYS);
     states.bind_storage(BINDING_PATH_STATES);
-    pixels.bind_storage(BINDING_PATH_PIXELS);
+    pending.bind_storage(BINDING_PATH_PENDING);
   }
   void bind_for_reading() const {
     ray_texels.bind(UNIT_RAYS);
     state_texels.bind(UNIT_PATH_STATES);
-    pixel_texels.bind(UNIT_PATH_PIXELS);
+    pending_texels.bind(UNIT_PATH_PENDING);
   }
-  gl::Buffer rays, states, pixels;
-  gl::BufferTexture ray_texels, state_texels, pixel_texels;
+  gl::Buffer rays, states, pending;  // in `pending` also the paths' words
+  gl::BufferTexture ray_texels, state_texels, pending_texels;
 };
-
-std::uint32_t chunks_of(std::uint32_t paths) {
-  return (paths + PATH_CHUNK - 1) / PATH_CHUNK;
-}
 
 }  // namespace
 
-struct PathTracerPass::VertexVariant : PathProgram {
-  explicit VertexVariant(const gl::ProgramPtr& p)
+// The programs for one kind of scene.
+struct PathTracerPass::SurfaceVariant : PathProgram {
+  explicit SurfaceVariant(const gl::ProgramPtr& p)
       : PathProgram(p), lights(p), most_bounces(p, "most_bounces"), strategies(p, "strategies") {}
+
+  void set(const FrameContext& frame, const LightTable& table, std::uint32_t first) const {
+    uniforms.set(frame, first);
+    lights.set(table.counts());
+    most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
+    const LightStrategy strategy = frame.settings.light_strategy;
+    strategies =
+        glm::vec2(strategy == LightStrategy::kRays ? 0.0f : 1.0f, strategy == LightStrategy::kLights ? 0.0f : 1.0f);
+  }
+
   LightTableUniforms lights;
   gl::Uniform<std::uint32_t> most_bounces;
   gl::Uniform<glm::vec2> strategies;
@@ -91,14 +99,11 @@ struct PathTracerPass::VertexVariant : PathProgram {
 struct PathTracerPass::Programs {
   explicit Programs(gl::ShaderLibrary& shaders)
       : start(shaders.compute("passes/path_start.comp")),
-        resolve(shaders.compute("passes/path_resolve.comp")),
-        scan(shaders.compute("passes/path_compact.comp", {"SCAN 1"})),
-        compact(shaders.compute("passes/path_compact.comp")),
         accumulate(shaders.raster("passes/full_screen.vert", "passes/path_accumulate.frag")),
-        vertex([&shaders](const gl::Defines& defines) { return shaders.compute("passes/path_vertex.comp", defines); }) {
-  }
-  PathProgram start, resolve, scan, compact, accumulate;
-  gl::Variants<VertexVariant> vertex;
+        vertex([&shaders](const gl::Defines& defines) { return shaders.compute("passes/path_vertex.comp", defines); }),
+        end([&shaders](const gl::Defines& defines) { return shaders.compute("passes/path_end.comp", defines); }) {}
+  PathProgram start, accumulate;
+  gl::Variants<SurfaceVariant> vertex, end;
 };
 
 struct PathTracerPass::Slots {
@@ -108,25 +113,21 @@ struct PathTracerPass::Slots {
         shadow_rays("shadow rays", std::uint64_t{paths} * sizeof(Ray), use),
         hits("path hits", std::uint64_t{paths} * sizeof(Hit), use),
         visible("visible lights", (std::uint64_t{paths} + 31) / 32 * 4, use),
-        pending("pending light", std::uint64_t{paths} * 16),
         radiance("path radiance", std::uint64_t{paths} * sizeof(glm::vec4)),
-        slots("path slots", std::uint64_t{paths} * 4),
-        counts("path counts", 4 * (1 + std::uint64_t{chunks_of(paths)}), use),
+        hit_list(use),
         hit_texels("path hits", GL_RGBA32UI),
         visible_texels("visible lights", GL_R32UI),
-        pending_texels("pending light", GL_RGBA32UI),
-        radiance_texels("path radiance", GL_RGBA32F),
-        slot_texels("path slots", GL_R32UI) {
+        radiance_texels("path radiance", GL_RGBA32F) {
+    hit_list.resize(paths);
     hit_texels.attach(hits);
     visible_texels.attach(visible);
-    pending_texels.attach(pending);
     radiance_texels.attach(radiance);
-    slot_texels.attach(slots);
   }
 
   std::unique_ptr<Carried> from, to;  // what paths brought to their surfaces, and what they take from there
-  gl::Buffer shadow_rays, hits, visible, pending, radiance, slots, counts;
-  gl::BufferTexture hit_texels, visible_texels, pending_texels, radiance_texels, slot_texels;
+  gl::Buffer shadow_rays, hits, visible, radiance;
+  HitList hit_list;
+  gl::BufferTexture hit_texels, visible_texels, radiance_texels;
 };
 
 PathTracerPass::PathTracerPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
@@ -146,7 +147,7 @@ void PathTracerPass::resize(glm::ivec2 size_px) {
 
 // A software device pays for all that a shader could do, so there is one for each kind of scene. They are compiled when
 // the first such scene comes: together they would take seconds.
-PathTracerPass::VertexVariant& PathTracerPass::variant_for(const DeviceScene& scene, const LightTable& lights) {
+gl::Defines PathTracerPass::defines_for(const DeviceScene& scene, const LightTable& lights) const {
   gl::Defines defines =
       gl::joined(gl::joined(scene.texture_defines(), scene.brdf_defines()), scene.environment_defines());
   if (scene.is_lambert()) defines.emplace_back("LAMBERT_ONLY 1");
@@ -154,7 +155,7 @@ PathTracerPass::VertexVariant& PathTracerPass::variant_for(const DeviceScene& sc
   if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
   if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
   if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
-  return programs_->vertex.with(defines);
+  return defines;
 }
 
 const Picture& PathTracerPass::run(FrameContext& frame, const LightTable& lights) {
@@ -171,25 +172,27 @@ const Picture& PathTracerPass::run(FrameContext& frame, const LightTable& lights
 }
 
 void PathTracerPass::trace_wave(FrameContext& frame, const LightTable& lights, const Wave& wave) {
-  VertexVariant& variant = variant_for(frame.scene, lights);
-  variant.uniforms.set(frame, wave.first_pixel);
-  variant.lights.set(lights.counts());
-  programs_->resolve.uniforms.set(frame, wave.first_pixel);
-  start(frame, wave);
+  const gl::Defines defines = defines_for(frame.scene, lights);
+  const SurfaceVariant& vertex = programs_->vertex.with(defines);
+  const SurfaceVariant& end = programs_->end.with(defines);
+  vertex.set(frame, lights, wave.first_pixel);
+  end.set(frame, lights, wave.first_pixel);
   Slots& s = *slots_;
-  frame.tracer.closest_hit(s.to->rays, wave.paths, s.hits);
+  start(frame, wave);
+  frame.tracer.closest_hit(s.to->rays, wave.paths, s.hits, &s.hit_list);
   frame.timer.mark("trace");
-  frame.rays += wave.paths;
-  for (std::uint32_t paths = wave.paths; paths > 0;) {
-    meet_surfaces(frame, variant, paths);
-    frame.timer.mark("surfaces");
-    clear_shadows_.run(frame, s.shadow_rays, paths, s.visible, {s.pending}, true);
-    frame.timer.mark("shadows");
-    frame.tracer.closest_hit(s.to->rays, paths, s.hits);
-    frame.timer.mark("trace");
-    paths = pack(paths);
+  end_rays(end, wave.paths);
+  frame.timer.mark("ends");
+  for (std::uint32_t paths = count_hits(); paths > 0; paths = count_hits()) {
     frame.rays += paths;
-    frame.timer.mark("pack");
+    meet_surfaces(vertex, paths);
+    frame.timer.mark("surfaces");
+    clear_shadows_.run(frame, s.shadow_rays, paths, s.visible, {s.to->pending}, true);
+    frame.timer.mark("shadows");
+    frame.tracer.closest_hit(s.to->rays, paths, s.hits, &s.hit_list);
+    frame.timer.mark("trace");
+    end_rays(end, paths);
+    frame.timer.mark("ends");
   }
   accumulate(frame, wave);
   frame.timer.mark("accumulate");
@@ -201,52 +204,48 @@ void PathTracerPass::start(const FrameContext& frame, const Wave& wave) {
   program.uniforms.path_count = wave.paths;
   slots_->to->bind_for_writing();
   slots_->radiance.bind_storage(BINDING_PATH_RADIANCE);
-  slots_->slots.bind_storage(BINDING_PATH_SLOTS);
   program.program->dispatch(wave.paths);
   glMemoryBarrier(kBetweenStages);
 }
 
-void PathTracerPass::meet_surfaces(const FrameContext& frame, VertexVariant& variant, std::uint32_t paths) {
+void PathTracerPass::meet_surfaces(const SurfaceVariant& vertex, std::uint32_t paths) {
   Slots& s = *slots_;
   std::swap(s.from, s.to);
   s.from->bind_for_reading();
   s.to->bind_for_writing();
   s.hit_texels.bind(UNIT_HITS);
-  s.slot_texels.bind(UNIT_PATH_SLOTS);
+  s.hit_list.texels.bind(UNIT_HIT_LIST);
   s.shadow_rays.bind_storage(BINDING_PATH_SHADOW_RAYS);
-  s.pending.bind_storage(BINDING_PATH_PENDING);
+  s.radiance_texels.bind(UNIT_PATH_RADIANCE);
   s.radiance.bind_storage(BINDING_PATH_RADIANCE);
-  variant.uniforms.path_count = paths;
-  variant.most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
-  const LightStrategy strategy = frame.settings.light_strategy;
-  variant.strategies =
-      glm::vec2(strategy == LightStrategy::kRays ? 0.0f : 1.0f, strategy == LightStrategy::kLights ? 0.0f : 1.0f);
-  variant.program->dispatch(paths);
+  vertex.uniforms.path_count = paths;
+  vertex.program->dispatch(paths);
   glMemoryBarrier(kBetweenStages);
 }
 
-// Adds the light that got through; the number of paths that go on.
-std::uint32_t PathTracerPass::pack(std::uint32_t paths) {
+// Adds the light that got through to where paths are, and that of the environment where they left the scene.
+void PathTracerPass::end_rays(const SurfaceVariant& end, std::uint32_t paths) {
   Slots& s = *slots_;
+  s.to->bind_for_reading();
+  s.hit_texels.bind(UNIT_HITS);
   s.visible_texels.bind(UNIT_PATH_VISIBLE);
-  s.pending_texels.bind(UNIT_PATH_PENDING);
-  s.to->pixel_texels.bind(UNIT_PATH_PIXELS);
+  s.radiance_texels.bind(UNIT_PATH_RADIANCE);
   s.radiance.bind_storage(BINDING_PATH_RADIANCE);
-  s.counts.bind_storage(BINDING_PATH_COUNTS);
-  s.slots.bind_storage(BINDING_PATH_SLOTS);
-  for (const PathProgram* program : {&programs_->resolve, &programs_->scan, &programs_->compact}) {
-    program->uniforms.path_count = paths;
-    program->program->dispatch(program == &programs_->scan ? 1u : chunks_of(paths));
-    glMemoryBarrier(kBetweenStages);
-  }
-  std::uint32_t going_on = 0;
-  if (s.counts.host()) {
-    gl::wait_for_device();
-    std::memcpy(&going_on, s.counts.host(), sizeof going_on);
+  end.uniforms.path_count = paths;
+  end.program->dispatch(paths);
+  glMemoryBarrier(kBetweenStages);
+}
+
+std::uint32_t PathTracerPass::count_hits() const {
+  constexpr std::size_t kCountWord = 3;
+  std::array<std::uint32_t, 4> dispatch{};
+  const gl::Buffer& list = slots_->hit_list.dispatch;
+  if (list.host()) {
+    std::memcpy(dispatch.data(), list.host(), sizeof dispatch);  // written by the tracer, on this side
   } else {
-    s.counts.download(std::as_writable_bytes(std::span(&going_on, 1)));
+    list.download(std::as_writable_bytes(std::span(dispatch)));
   }
-  return going_on;
+  return dispatch[kCountWord];
 }
 
 void PathTracerPass::accumulate(const FrameContext& frame, const Wave& wave) {

@@ -1,5 +1,5 @@
 // A wavefront path tracer over the tracers' seam: all paths of a wave meet their surfaces in one dispatch, then all
-// shadow rays and all next rays are traced, and the paths that go on are packed together.
+// shadow rays and all next rays are traced, and those that hit something are the next dispatch.
 #pragma once
 
 #include <memory>
@@ -29,14 +29,15 @@ class PathTracerPass {
     std::uint32_t first_pixel = 0, paths = 0;
   };
   struct Programs;
-  struct VertexVariant;
+  struct SurfaceVariant;
   struct Slots;
 
-  VertexVariant& variant_for(const DeviceScene& scene, const LightTable& lights);
+  gl::Defines defines_for(const DeviceScene& scene, const LightTable& lights) const;
   void trace_wave(FrameContext& frame, const LightTable& lights, const Wave& wave);
   void start(const FrameContext& frame, const Wave& wave);
-  void meet_surfaces(const FrameContext& frame, VertexVariant& variant, std::uint32_t paths);
-  std::uint32_t pack(std::uint32_t paths);
+  void meet_surfaces(const SurfaceVariant& vertex, std::uint32_t paths);
+  void end_rays(const SurfaceVariant& end, std::uint32_t paths);
+  std::uint32_t count_hits() const;
   void accumulate(const FrameContext& frame, const Wave& wave);
 
   std::unique_ptr<Programs> programs_;

@@ -23,3 +23,6 @@ Hit fetch_hit(int index) {
   const uint last = shift < 2 ? (shift == 0 ? b.x : b.y) : (shift == 2 ? b.z : b.w);
   return Hit(uintBitsToFloat(first.x), first.y, first.z, uintBitsToFloat(first.w), uintBitsToFloat(last));
 }
+
+// Of the hit alone; negative: a miss.
+float fetch_distance(int index) { return uintBitsToFloat(texelFetch(hit_words, 5 * index >> 2)[5 * index & 3]); }

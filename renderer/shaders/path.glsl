@@ -1,27 +1,28 @@
-// The state of paths in flight: renderer/passes/path_tracer.h. A path lives in a slot; slots are packed anew after every
-// bounce, so that all lanes have work. Needs packing, sampling.
+// The state of paths in flight: renderer/passes/path_tracer.h. A path lives in a slot; after every bounce those that met a
+// surface take the first slots, so that all lanes have work. Needs packing, sampling.
 
-// Which pixel of the wave a path belongs to, how many surfaces it has met, and through how many clear walls it has come
-// since (the last three bits of it).
-const uint kDeadPath = 0xffffffffu;
-const uint kPixelBits = 20u, kDepthBits = 9u;
+// A path's word: which pixel of the wave it belongs to, how many surfaces it has met, through how many clear walls it has
+// come since (the last three bits of it), and whether the light that waits for its shadow ray is direct.
+const uint kPixelBits = 19u, kDepthBits = 9u, kWallBits = 3u;
+const uint kDirectLight = 1u << 31u;
 uint pack_path(uint pixel, uint depth, uint walls) {
-  return pixel | depth << kPixelBits | walls << (kPixelBits + kDepthBits);
+  return pixel | depth << kPixelBits | (walls & ((1u << kWallBits) - 1u)) << (kPixelBits + kDepthBits);
 }
 uint path_pixel(uint path) { return path & ((1u << kPixelBits) - 1u); }
 uint path_depth(uint path) { return path >> kPixelBits & ((1u << kDepthBits) - 1u); }
-uint path_walls(uint path) { return path >> (kPixelBits + kDepthBits); }
-const uint kGreatestDepth = (1u << kDepthBits) - 2u;
-
-// Light that waits for its shadow ray; kDeadPath where there is none.
-const uint kDirectLight = 1u << 31u;
-uint pack_pending(uint pixel, bool direct) { return direct ? pixel | kDirectLight : pixel; }
-uint pending_pixel(uint bits) { return bits & ~kDirectLight; }
+uint path_walls(uint path) { return path >> (kPixelBits + kDepthBits) & ((1u << kWallBits) - 1u); }
+// Without a limit paths end here: Russian roulette lets fewer than one in 10^4 come so far even between white walls.
+const uint kGreatestDepth = (1u << kDepthBits) - 1u;
 
 uniform vec2 shown;  // of direct and of indirect light, 0 or 1
 
 // Its part of a pixel: the light the view shows and the luminance of all.
 vec4 shown_light(vec3 light, bool direct) { return vec4(light * (direct ? shown.x : shown.y), luminance(light)); }
+
+// What the camera sees that is no lit surface, straight or through clear walls: `mark` tells what it is, see Picture.
+vec4 unlit_light(vec3 light, vec3 throughput, float mark, vec4 before) {
+  return before.a == 0.0 ? vec4(light * shown.x, mark) : shown_light(throughput * light, true);
+}
 
 // The first of the picture's pixels in this wave, in rows; the picture's width.
 uniform uint first_pixel;

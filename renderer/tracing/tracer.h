@@ -46,7 +46,7 @@ struct HitList {
   /// Room for the hits of `most_rays` rays.
   void resize(std::uint32_t most_rays);
 
-  gl::Buffer rays;                                 // uint32 each: indices of rays, in no particular order
+  gl::Buffer rays;                                 // uint32 each: indices of rays, see closest_hit for their order
   gl::BufferTexture texels{"hit list", GL_R32UI};  // the same
   // uint32 x 5: groups of kHitGroup in x, 1, 1 (an indirect dispatch's arguments); the count of hits; how many rays
   // test_candidates has traced anew
@@ -111,7 +111,9 @@ class Tracer {
   virtual void update(const TraceScene& scene) = 0;
 
   /// For rays[0, count): the nearest hit with t_min < t < t_max, or t = kMiss. Both sides of a triangle are hit.
-  /// Buffers hold Ray and Hit elements. `list`, where not null, is filled with the rays that hit.
+  /// Buffers hold Ray and Hit elements. `list`, where not null, is filled with the rays that hit; where a ray's result may
+  /// depend on its neighbours in the buffer (Embree's packets round otherwise than single rays) they are in order, so that
+  /// who makes new rays of them gets the same every time.
   /// The call orders itself against GL commands before and after it.
   virtual void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list = nullptr) = 0;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <vector>
 
 #include "renderer/check.h"
 #include "renderer/tracing/embree/candidates.h"
@@ -13,8 +15,41 @@ namespace {
 
 constexpr std::uint32_t kChunkRays = 1024;  // a multiple of 32, so that no two threads share a word of `visible`
 
+// Lists of hits that threads fill chunk by chunk, joined in the order of the rays.
+class ChunkLists {
+ public:
+  void resize(std::uint32_t rays) {
+    hits_.resize(std::max<std::size_t>(hits_.size(), rays));
+    ends_.assign((rays + kChunkRays - 1) / kChunkRays, 0);
+  }
+
+  // Of the chunk that begins at ray `begin`.
+  void set(std::uint32_t begin, std::span<const std::uint32_t> hits) {
+    std::copy(hits.begin(), hits.end(), hits_.begin() + begin);
+    ends_[begin / kChunkRays] = static_cast<std::uint32_t>(hits.size());
+  }
+
+  // Their sum.
+  std::uint32_t join(ThreadPool& pool, std::uint32_t* out) {
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    constexpr std::uint32_t kChunksAtOnce = 64;
+    pool.parallel_for(
+        static_cast<std::uint32_t>(ends_.size()), kChunksAtOnce, [&](std::uint32_t first, std::uint32_t end) {
+          for (std::uint32_t chunk = first; chunk < end; ++chunk) {
+            const std::uint32_t before = chunk == 0 ? 0 : ends_[chunk - 1];
+            std::copy_n(hits_.data() + std::size_t{chunk} * kChunkRays, ends_[chunk] - before, out + before);
+          }
+        });
+    return ends_.empty() ? 0 : ends_.back();
+  }
+
+ private:
+  std::vector<std::uint32_t> hits_;  // a chunk's from its first ray on
+  std::vector<std::uint32_t> ends_;  // by chunk: how many there are, then how many up to its end
+};
+
 template <int width>
-void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, HitListWriter& list, std::uint32_t begin,
+void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, ChunkLists* lists, std::uint32_t begin,
                   std::uint32_t end) {
   const FlushDenormals flush;
   Packet<width> packet;
@@ -38,7 +73,7 @@ void closest_hits(const EmbreeScene& scene, const Ray* rays, Hit* hits, HitListW
     if (packet.is_full()) finish();
   }
   if (!packet.is_empty()) finish();
-  list.add(std::span(hit_rays).first(hit_count));
+  if (lists) lists->set(begin, std::span(hit_rays).first(hit_count));
 }
 
 template <int width>
@@ -83,17 +118,18 @@ class EmbreeTracer final : public Tracer {
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Hit), <=, hits.size_bytes());
     const Ray* in = of_host<Ray>(rays, count);
     Hit* out = host_of<Hit>(hits);
-    HitListWriter writer(list ? host_of<std::uint32_t>(list->rays) : nullptr);
+    ChunkLists* lists = list ? &chunk_lists_ : nullptr;
+    if (lists) lists->resize(count);
     gl::wait_for_device();
     pool_.parallel_for(count, kChunkRays, [&](std::uint32_t begin, std::uint32_t end) {
       if (width_ == 16)
-        closest_hits<16>(scene_, in, out, writer, begin, end);
+        closest_hits<16>(scene_, in, out, lists, begin, end);
       else if (width_ == 8)
-        closest_hits<8>(scene_, in, out, writer, begin, end);
+        closest_hits<8>(scene_, in, out, lists, begin, end);
       else
-        closest_hits<4>(scene_, in, out, writer, begin, end);
+        closest_hits<4>(scene_, in, out, lists, begin, end);
     });
-    if (list) finish(*list, writer.count());
+    if (list) finish(*list, chunk_lists_.join(pool_, host_of<std::uint32_t>(list->rays)));
   }
 
   void any_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible) override {
@@ -156,6 +192,7 @@ class EmbreeTracer final : public Tracer {
 
   ThreadPool pool_;
   EmbreeScene scene_;
+  ChunkLists chunk_lists_;
   int width_ = 4;
 };
 

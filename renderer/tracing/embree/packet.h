@@ -29,11 +29,12 @@ class FlushDenormals {
 /// False for an inactive ray and for one that is not finite, as a degenerate camera makes them: over such a ray Embree
 /// ends the process.
 inline bool is_active(const Ray& ray) {
-  constexpr float kFarthest = 1e18f;
-  const glm::vec3 origin = glm::abs(ray.origin_ws), direction = glm::abs(ray.direction_ws);
-  const auto is_within = [](float x) { return x <= kFarthest; };
-  return (ray.t_max >= ray.t_min) & is_within(origin.x) & is_within(origin.y) & is_within(origin.z) &
-         is_within(direction.x) & is_within(direction.y) & is_within(direction.z);
+  const __m128 farthest = _mm_set1_ps(1e18f), sign = _mm_set1_ps(-0.0f);
+  const auto within = [&](const glm::vec3& v) {  // with what follows it in the record, a bit each
+    return _mm_movemask_ps(_mm_cmple_ps(_mm_andnot_ps(sign, _mm_loadu_ps(&v.x)), farthest));
+  };
+  constexpr int kVector = 7;
+  return (ray.t_max >= ray.t_min) & ((within(ray.origin_ws) & within(ray.direction_ws) & kVector) == kVector);
 }
 
 template <int width>
@@ -61,35 +62,29 @@ struct PacketTypes<16> {
 template <int width>
 class Packet {
  public:
+  Packet() { std::fill(std::begin(packet_.ray.mask), std::end(packet_.ray.mask), ~0u); }
+
   bool is_full() const { return size_ == width; }
   bool is_empty() const { return size_ == 0; }
   int size() const { return size_; }
-  std::uint32_t ray(int lane) const { return rays_[static_cast<std::size_t>(lane)]; }
+  std::uint32_t ray(int lane) const { return indices_[static_cast<std::size_t>(lane)]; }
 
   void add(const Ray& ray, std::uint32_t index) {
-    const int i = size_++;
-    rays_[static_cast<std::size_t>(i)] = index;
-    valid_[i] = -1;
-    auto& r = packet_.ray;
-    r.org_x[i] = ray.origin_ws.x, r.org_y[i] = ray.origin_ws.y, r.org_z[i] = ray.origin_ws.z;
-    r.dir_x[i] = ray.direction_ws.x, r.dir_y[i] = ray.direction_ws.y, r.dir_z[i] = ray.direction_ws.z;
-    r.tnear[i] = std::max(ray.t_min, 0.0f);
-    r.tfar[i] = ray.t_max;
-    r.time[i] = 0.0f, r.mask[i] = ~0u, r.id[i] = 0, r.flags[i] = 0;
-    packet_.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    packet_.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    const auto lane = static_cast<std::size_t>(size_++);
+    rays_[lane] = ray;
+    indices_[lane] = index;
   }
-
-  void clear() {
-    size_ = 0;
-    std::fill(std::begin(valid_), std::end(valid_), 0);
-  }
+  void clear() { size_ = 0; }
 
   void intersect(const EmbreeScene& scene) {
+    load();
+    std::fill(std::begin(packet_.hit.geomID), std::end(packet_.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    std::fill(std::begin(packet_.hit.instID[0]), std::end(packet_.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
     EmbreeContext context = context_for(scene);
     PacketTypes<width>::kIntersect(valid_, scene.top_level(), &context.embree, &packet_);
   }
   void occlude(const EmbreeScene& scene) {
+    load();
     EmbreeContext context = context_for(scene);
     PacketTypes<width>::kOccluded(valid_, scene.top_level(), &context.embree, &packet_.ray);
   }
@@ -114,23 +109,53 @@ class Packet {
     return context;
   }
 
+  // Four rays at a time from records to lanes; lanes beyond the last ray repeat the first.
+  void load() {
+    auto& r = packet_.ray;
+    const __m128 zero = _mm_setzero_ps();
+    for (int first = 0; first < width; first += 4) {
+      __m128 origin[4], direction[4];
+      for (int i = 0; i < 4; ++i) {
+        const Ray& ray = rays_[static_cast<std::size_t>(first + i < size_ ? first + i : 0)];
+        origin[i] = _mm_loadu_ps(&ray.origin_ws.x);
+        direction[i] = _mm_loadu_ps(&ray.direction_ws.x);
+        valid_[first + i] = first + i < size_ ? -1 : 0;
+      }
+      _MM_TRANSPOSE4_PS(origin[0], origin[1], origin[2], origin[3]);
+      _MM_TRANSPOSE4_PS(direction[0], direction[1], direction[2], direction[3]);
+      _mm_store_ps(r.org_x + first, origin[0]), _mm_store_ps(r.org_y + first, origin[1]);
+      _mm_store_ps(r.org_z + first, origin[2]), _mm_store_ps(r.tnear + first, _mm_max_ps(origin[3], zero));
+      _mm_store_ps(r.dir_x + first, direction[0]), _mm_store_ps(r.dir_y + first, direction[1]);
+      _mm_store_ps(r.dir_z + first, direction[2]), _mm_store_ps(r.tfar + first, direction[3]);
+    }
+  }
+
   bool rays_stay_together(float diagonal_m) const {
     constexpr float kLeastCosine = 0.9f, kMostSpread = 0.03f;  // of the scene's diagonal
     const auto& r = packet_.ray;
-    float least_cosine = 1.0f, greatest_spread = 0.0f;
-    for (int i = 1; i < size_; ++i) {
-      const float cosine = r.dir_x[0] * r.dir_x[i] + r.dir_y[0] * r.dir_y[i] + r.dir_z[0] * r.dir_z[i];
-      const float spread =
-          std::abs(r.org_x[0] - r.org_x[i]) + std::abs(r.org_y[0] - r.org_y[i]) + std::abs(r.org_z[0] - r.org_z[i]);
-      least_cosine = std::min(least_cosine, cosine);
-      greatest_spread = std::max(greatest_spread, spread);
+    const auto differences = [](const float* values, int first) {
+      return _mm_sub_ps(_mm_load_ps(values + first), _mm_set1_ps(values[0]));
+    };
+    const auto products = [](const float* values, int first) {
+      return _mm_mul_ps(_mm_load_ps(values + first), _mm_set1_ps(values[0]));
+    };
+    const __m128 sign = _mm_set1_ps(-0.0f);
+    int together = 0xf;
+    for (int i = 0; i < width; i += 4) {
+      const __m128 cosine = _mm_add_ps(_mm_add_ps(products(r.dir_x, i), products(r.dir_y, i)), products(r.dir_z, i));
+      const __m128 spread = _mm_add_ps(
+          _mm_add_ps(_mm_andnot_ps(sign, differences(r.org_x, i)), _mm_andnot_ps(sign, differences(r.org_y, i))),
+          _mm_andnot_ps(sign, differences(r.org_z, i)));
+      together &= _mm_movemask_ps(_mm_and_ps(_mm_cmpgt_ps(cosine, _mm_set1_ps(kLeastCosine)),
+                                             _mm_cmple_ps(spread, _mm_set1_ps(kMostSpread * diagonal_m))));
     }
-    return least_cosine > kLeastCosine && greatest_spread <= kMostSpread * diagonal_m;
+    return together == 0xf;
   }
 
   alignas(64) int valid_[width] = {};
   alignas(64) typename PacketTypes<width>::RayHit packet_ = {};
-  std::array<std::uint32_t, width> rays_ = {};
+  std::array<Ray, width> rays_;
+  std::array<std::uint32_t, width> indices_ = {};
   int size_ = 0;
 };
 
@@ -139,8 +164,7 @@ class HitListWriter {
  public:
   explicit HitListWriter(std::uint32_t* rays) : rays_(rays) {}
   void add(std::span<const std::uint32_t> hits) {
-    if (rays_ != nullptr)
-      std::copy(hits.begin(), hits.end(), rays_ + count_.fetch_add(static_cast<std::uint32_t>(hits.size())));
+    std::copy(hits.begin(), hits.end(), rays_ + count_.fetch_add(static_cast<std::uint32_t>(hits.size())));
   }
   std::uint32_t count() const { return count_; }
 
