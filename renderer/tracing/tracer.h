@@ -111,10 +111,10 @@ class Tracer {
   virtual void update(const TraceScene& scene) = 0;
 
   /// For rays[0, count): the nearest hit with t_min < t < t_max, or t = kMiss. Both sides of a triangle are hit.
-  /// Buffers hold Ray and Hit elements. `list`, where not null, is filled with the rays that hit; where a ray's result may
-  /// depend on its neighbours in the buffer (Embree's packets round otherwise than single rays) they are in order, so that
-  /// who makes new rays of them gets the same every time.
-  /// The call orders itself against GL commands before and after it.
+  /// Buffers hold Ray and Hit elements. `list`, where not null, is filled with the rays that hit; where a ray's result
+  /// may depend on its neighbours in the buffer (Embree's packets round otherwise than single rays) they are in order,
+  /// so that who makes new rays of them gets the same every time. The call orders itself against GL commands before and
+  /// after it.
   virtual void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list = nullptr) = 0;
 
   /// For rays[0, count): bit (i % 32) of word (i / 32) of `visible` is 1 where nothing lies between t_min and t_max.

@@ -30,8 +30,9 @@ void add_environment_options(CLI::App& app, EnvironmentChoice& choice) {
       ->type_name("FILE");
   add_parsed(app, "--environment-rotation", choice.rotation, parse_rotation, "DEGREES",
              "Turns the environment about the vertical axis");
-  add_parsed(app, "--environment-strength", choice.strength, parse_strength, "FACTOR",
-             "Scales the environment's light; 0: the scene's own lamps alone, without the sky that dark scenes are given");
+  add_parsed(
+      app, "--environment-strength", choice.strength, parse_strength, "FACTOR",
+      "Scales the environment's light; 0: the scene's own lamps alone, without the sky that dark scenes are given");
 }
 
 }  // namespace lightwell

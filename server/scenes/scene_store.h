@@ -67,8 +67,8 @@ class SceneStore {
   std::string first_;  // from the command line
 };
 
-/// A scene from a file, ready to be shown: with `default_light`, lit if it brings no light of its own; what was left out is
-/// in the log.
+/// A scene from a file, ready to be shown: with `default_light`, lit if it brings no light of its own; what was left
+/// out is in the log.
 std::shared_ptr<const StagedScene> stage_upload(Scene scene, const std::string& name, bool default_light = true);
 
 /// There is no scene of that name: 404 where it is the resource, 422 where a body names it.
