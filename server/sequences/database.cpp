@@ -2,7 +2,9 @@
 
 #include <sqlite3.h>
 
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 namespace lightwell {
 namespace {
@@ -31,6 +33,16 @@ void Database::fail(const char* doing) const {
 
 void Database::execute(const char* sql) {
   if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail(sql);
+}
+
+void Database::set_up(const char* sql) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kBusyMs);
+  for (;;) {
+    const int result = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
+    if (result == SQLITE_OK) return;
+    if (result != SQLITE_BUSY || std::chrono::steady_clock::now() > end) fail(sql);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
 }
 
 int Database::changes() const {

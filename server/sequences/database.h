@@ -23,6 +23,9 @@ class Database {
 
   /// One or several statements without values or rows.
   void execute(const char* sql);
+  /// The same, for what may be run again and again, as a schema: waits for other processes that do so at the same time,
+  /// also where SQLite would rather refuse than wait, as for a change of the journal's mode.
+  void set_up(const char* sql);
   /// Rows that the last statement changed.
   int changes() const;
 

@@ -82,7 +82,7 @@ void append_files(std::vector<FrameFile>& all, const std::string& text) {
 }  // namespace
 
 JobTable::JobTable(const std::filesystem::path& file) : database_(file), server_(random_id()) {
-  database_.execute(kSchema);
+  database_.set_up(kSchema);
   beat();
 }
 

@@ -1,7 +1,10 @@
 // Scripted frames: rendered once, kept on the disk, fetched in every way, whatever happens to the server meanwhile.
 #include <filesystem>
+#include <future>
+#include <latch>
 
 #include "server/random_id.h"
+#include "server/sequences/job_table.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
@@ -50,6 +53,21 @@ class SequenceTest : public testing::Test {
 
   const std::filesystem::path folder_;
 };
+
+TEST_F(SequenceTest, ServersThatStartAtTheSameMomentShareANewFolder) {
+  std::filesystem::create_directories(folder_);
+  for (int round = 0; round < 20; ++round) {
+    const std::filesystem::path file = folder_ / (std::to_string(round) + ".sqlite");
+    std::latch all_there(6);
+    std::vector<std::future<void>> servers;
+    for (int i = 0; i < 6; ++i)
+      servers.push_back(std::async(std::launch::async, [&] {
+        all_there.arrive_and_wait();
+        const JobTable table(file);
+      }));
+    for (std::future<void>& server : servers) EXPECT_NO_THROW(server.get());
+  }
+}
 
 TEST_F(SequenceTest, IsRenderedAndFetchedFrameByFrameAndAsAZip) {
   const Running server = start();
