@@ -1,7 +1,5 @@
 #include "renderer/passes/clear_hits.h"
 
-#include <cstring>
-
 #include "renderer/passes/bindings.glsl"
 
 namespace lightwell {
@@ -11,7 +9,7 @@ ClearHitsPass::ClearHitsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       rays_("rays through clear surfaces", 0, buffers),
       hits_("hits behind clear surfaces", 0, buffers),
       cleared_("clear surfaces before hits", 0),
-      count_("count of rays through clear surfaces", sizeof(std::uint32_t), gl::BufferUse::kHostVisible) {}
+      onward_("count of rays through clear surfaces") {}
 
 void ClearHitsPass::resize(std::uint32_t most_records) {
   rays_.reserve(std::uint64_t{most_records} * sizeof(Ray));
@@ -46,24 +44,19 @@ std::uint64_t ClearHitsPass::run(const DeviceScene& scene, Tracer& tracer, const
 // The number of rays that go on.
 std::uint32_t ClearHitsPass::step(Variant& variant, const OcclusionRays& rays, const OcclusionMap& occlusion,
                                   bool goes_on) {
-  count_.clear();
+  onward_.begin(BINDING_OUTPUT);
   rays.directions.direction_texels.bind(UNIT_DIRECTIONS);
   rays.patches.origin_texels.bind(UNIT_PIXEL_ORIGINS);
   hit_texels_.bind(UNIT_HITS);
   occlusion.hits.bind_storage(BINDING_HITS);
   rays_.bind_storage(BINDING_RAYS);
   cleared_.bind_storage(BINDING_ARRIVING);
-  count_.bind_storage(BINDING_OUTPUT);
   variant.slot_count = rays.slots;
   variant.patch_count = rays.patches.count;
   variant.record_count = rays.slots * rays.directions.count;
   variant.goes_on = goes_on ? 1 : 0;
   variant.program->dispatch(rays.slots * rays.directions.count);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-  gl::wait_for_device();
-  std::uint32_t onward = 0;
-  std::memcpy(&onward, count_.host(), sizeof onward);
-  return onward;
+  return onward_.value();
 }
 
 }  // namespace lightwell

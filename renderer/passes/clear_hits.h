@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/gl/buffer.h"
+#include "renderer/gl/counter.h"
 #include "renderer/gl/variants.h"
 #include "renderer/passes/hit_light.h"
 
@@ -36,7 +37,8 @@ class ClearHitsPass {
   std::uint32_t step(Variant& variant, const OcclusionRays& rays, const OcclusionMap& occlusion, bool goes_on);
 
   gl::Variants<Variant> variants_;
-  gl::Buffer rays_, hits_, cleared_, count_;
+  gl::Buffer rays_, hits_, cleared_;
+  gl::Counter onward_;
   gl::BufferTexture ray_texels_{"rays through clear surfaces", GL_RGBA32F};
   gl::BufferTexture hit_texels_{"hits behind clear surfaces", GL_RGBA32UI};
   gl::BufferTexture cleared_texels_{"clear surfaces before hits", GL_RGBA32F};

@@ -1,7 +1,5 @@
 #include "renderer/passes/clear_shadows.h"
 
-#include <cstring>
-
 #include "renderer/passes/bindings.glsl"
 #include "renderer/passes/device_types.h"
 
@@ -11,7 +9,7 @@ ClearShadowsPass::ClearShadowsPass(gl::ShaderLibrary& shaders, gl::BufferUse buf
     : variants_(
           [&shaders](const gl::Defines& defines) { return shaders.compute("passes/clear_shadows.comp", defines); }),
       hits_("hits of shadow rays", 0, buffers),
-      count_("count of shadow rays through clear surfaces", sizeof(std::uint32_t), gl::BufferUse::kHostVisible) {}
+      onward_("count of shadow rays through clear surfaces") {}
 
 void ClearShadowsPass::run(FrameContext& frame, gl::Buffer& rays, std::uint32_t count, gl::Buffer& visible,
                            const WaitingLight& light, bool walls_only) {
@@ -38,18 +36,13 @@ void ClearShadowsPass::run(FrameContext& frame, gl::Buffer& rays, std::uint32_t 
 
 // The number of rays that go on.
 std::uint32_t ClearShadowsPass::step(const Variant& variant, std::uint32_t count, bool goes_on) {
-  count_.clear();
+  onward_.begin(BINDING_OUTPUT);
   ray_texels_.bind(UNIT_RAYS);
   hit_texels_.bind(UNIT_HITS);
-  count_.bind_storage(BINDING_OUTPUT);
   variant.ray_count = count;
   variant.goes_on = goes_on ? 1 : 0;
   variant.program->dispatch(count);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-  gl::wait_for_device();
-  std::uint32_t onward = 0;
-  std::memcpy(&onward, count_.host(), sizeof onward);
-  return onward;
+  return onward_.value();
 }
 
 }  // namespace lightwell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/gl/buffer.h"
+#include "renderer/gl/counter.h"
 #include "renderer/gl/variants.h"
 #include "renderer/methods/frame_context.h"
 
@@ -42,7 +43,8 @@ class ClearShadowsPass {
   std::uint32_t step(const Variant& variant, std::uint32_t count, bool goes_on);
 
   gl::Variants<Variant> variants_;
-  gl::Buffer hits_, count_;
+  gl::Buffer hits_;
+  gl::Counter onward_;
   gl::BufferTexture ray_texels_{"shadow rays", GL_RGBA32F};
   gl::BufferTexture hit_texels_{"hits of shadow rays", GL_RGBA32UI};
 };

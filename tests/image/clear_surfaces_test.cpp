@@ -11,14 +11,6 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-Settings thesis_settings(int bounces) {
-  Settings settings;
-  settings.bounces = bounces;
-  settings.samples = 64;
-  settings.indirect_size = 32;
-  return settings;
-}
-
 /// A thin wall that passes `color`, and reflects nothing unless `specular` is greater than 0.
 Material pane(glm::vec3 color, float specular = 0.0f) {
   Material material;

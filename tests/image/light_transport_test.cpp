@@ -12,14 +12,6 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-Settings thesis_settings(int bounces) {
-  Settings settings;
-  settings.bounces = bounces;
-  settings.samples = 64;
-  settings.indirect_size = 32;
-  return settings;
-}
-
 void expect_near_relative(float actual, float expected, float tolerance) {
   EXPECT_NEAR(actual, expected, std::abs(expected) * tolerance);
 }

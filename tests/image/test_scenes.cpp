@@ -170,6 +170,14 @@ void SceneMaker::spot(glm::vec3 position, glm::vec3 direction, float candela, fl
   add_light(light, position, glm::normalize(direction));
 }
 
+Settings thesis_settings(int bounces) {
+  Settings settings;
+  settings.bounces = bounces;
+  settings.samples = 64;
+  settings.indirect_size = 32;
+  return settings;
+}
+
 PlacedCamera look_at(glm::vec3 eye, glm::vec3 target, float yfov) {
   const glm::vec3 direction = glm::normalize(target - eye);
   const glm::vec3 up = std::abs(direction.y) > 0.9f ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);

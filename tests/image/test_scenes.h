@@ -45,6 +45,9 @@ class SceneMaker {
   Scene scene_;
 };
 
+/// The method thesis with 64 samples and an indirect map as wide as the pictures here.
+Settings thesis_settings(int bounces);
+
 /// A camera at `eye` looking at `target`.
 PlacedCamera look_at(glm::vec3 eye, glm::vec3 target, float yfov = 0.6f);
 
