@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "renderer/image_io/codecs/codecs.h"
+#include "renderer/image_io/codecs/library_leaks.h"
 
 namespace lightwell::codecs {
 namespace {
@@ -51,6 +52,7 @@ Result<Image> decode(std::span<const std::byte> bytes, const EncodedImage& encod
 }  // namespace
 
 Result<Image> decode_image(std::span<const std::byte> bytes, const EncodedImage& encoded) {
+  const LibraryLeaks allowed;
   try {
     return decode(bytes, encoded);
   } catch (const std::exception& exception) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "renderer/image_io/codecs/codecs.h"
+#include "renderer/image_io/codecs/library_leaks.h"
 
 namespace lightwell::codecs {
 namespace {
@@ -71,6 +72,7 @@ Result<FloatImage> read_image(const std::filesystem::path& path, std::uint64_t m
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return Error{ErrorKind::kNotFound, path.string(), "no such file"};
   if (!std::filesystem::is_regular_file(path, error)) return invalid_input(path.string(), "not a file");
+  const LibraryLeaks allowed;
   try {
     return read(path.string(), max_pixels);
   } catch (const std::exception& exception) {
