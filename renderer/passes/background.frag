@@ -2,6 +2,7 @@
 // there is no clear surface, the picture behind them; volumes absorb even where only their backs are seen.
 #include "passes/bindings.glsl"
 #include "shaders/sampling.glsl"
+#define FLAT_CAMERA
 #include "shaders/camera.glsl"
 #include "shaders/environment.glsl"
 #include "shaders/finite.glsl"

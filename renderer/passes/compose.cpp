@@ -108,10 +108,10 @@ void EnvironmentBlock::bind() const {
 
 ComposePass::ComposePass(gl::ShaderLibrary& shaders)
     : surfaces_([&shaders](const gl::Defines& defines) {
-        return shaders.raster("passes/full_screen.vert", "passes/compose.frag", defines);
+        return shaders.raster("passes/full_screen_camera.vert", "passes/compose.frag", defines);
       }),
       background_([&shaders](const gl::Defines& defines) {
-        return shaders.raster("passes/full_screen.vert", "passes/background.frag", defines);
+        return shaders.raster("passes/full_screen_camera.vert", "passes/background.frag", defines);
       }) {}
 
 void ComposePass::resize(const gl::Texture& depth) {

@@ -5,6 +5,7 @@
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
 #include "shaders/brdf.glsl"
+#define FLAT_CAMERA
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #ifndef TRACED_LIGHT

@@ -31,7 +31,7 @@ void main() {
   if (mapping == 3) color = fract(value.rgb);
   if (mapping == 4) color = value.rgb * 0.5 + 0.5;
   // Half a step of noise hides the steps of eight bits in dark gradients.
-  const float noise = unit_interval(hash(uvec3(pixel, 7u))) - 0.5;
+  const float noise = unit_interval(hash(uint(pixel.y << 16 | pixel.x))) - 0.5;
   const uvec3 bytes = uvec3(clamp(srgb_from_linear(color) * 255.0 + 0.5 + noise, 0.0, 255.0));
   display_rgbx[pixel.y * size_px.x + pixel.x] = bytes.r | bytes.g << 8 | bytes.b << 16 | 0xff000000u;
 }

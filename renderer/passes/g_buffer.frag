@@ -88,7 +88,9 @@ void main() {
 #endif
   Surface surface = shade_surface(material, at, footprint);
   if ((material.flags & kMaterialAlphaMask) != 0u && surface.base_color.a < material.alpha_cutoff) discard;
-  if ((material.flags & kMaterialAlphaBlend) != 0u && surface.base_color.a <= coverage_threshold()) discard;
+  if ((material.flags & kMaterialAlphaBlend) != 0u) {
+    if (surface.base_color.a <= coverage_threshold()) discard;
+  }
 
   const vec3 to_camera = direction_to_camera(world_position);
   vec3 geometric_normal = cross(dFdx(world_position), dFdy(world_position));

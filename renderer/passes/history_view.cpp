@@ -6,7 +6,7 @@ namespace lightwell {
 
 HistoryViewPass::HistoryViewPass(gl::ShaderLibrary& shaders)
     : variants_([&shaders](const gl::Defines& defines) {
-        return shaders.raster("passes/full_screen.vert", "passes/history_view.frag", defines);
+        return shaders.raster("passes/full_screen_camera.vert", "passes/history_view.frag", defines);
       }) {}
 
 bool HistoryViewPass::shows(ViewKind view) {

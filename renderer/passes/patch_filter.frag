@@ -2,6 +2,7 @@
 // more than their noise explains (Schied et al. 2017): the longer the history, the narrower.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
+#define FLAT_CAMERA
 #include "shaders/camera.glsl"
 
 layout(binding = UNIT_IMAGE_A) uniform sampler2D map;      // rgb; a: variance of its luminance, negative: nothing there

@@ -4,6 +4,7 @@
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
 #include "shaders/brdf.glsl"
+#define FLAT_CAMERA
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/patch_samples.glsl"

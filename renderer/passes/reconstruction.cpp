@@ -11,7 +11,7 @@ namespace {
 constexpr float kLuminanceTolerance = 6.0f;  // standard deviations
 
 gl::ProgramPtr filter_step(gl::ShaderLibrary& shaders, const gl::Defines& defines) {
-  return shaders.raster("passes/full_screen.vert", "passes/patch_filter.frag", defines);
+  return shaders.raster("passes/full_screen_camera.vert", "passes/patch_filter.frag", defines);
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ ReconstructionPass::Light::Light(const gl::ProgramPtr& p)
 
 ReconstructionPass::ReconstructionPass(gl::ShaderLibrary& shaders)
     : light_([&shaders](const gl::Defines& defines) {
-        return shaders.raster("passes/full_screen.vert", "passes/patch_light.frag", defines);
+        return shaders.raster("passes/full_screen_camera.vert", "passes/patch_light.frag", defines);
       }),
       filter_first_(filter_step(shaders, {"FIRST 1"})),
       filter_next_(filter_step(shaders, {})),

@@ -25,11 +25,12 @@ layout(local_size_x = 64) in;
 #include "shaders/radiance_cache.glsl"
 
 layout(binding = UNIT_SAMPLE_STATES) uniform samplerBuffer states_in;  // a: density of the ray
-layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+// All is written once, at the end, and by four words: on a software device every store is a loop over the lanes.
+layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { vec4 shadow_rays[]; };  // 2 a ray
 // Two a slot: what is known; what waits for the shadow ray.
 layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
-// Of paths that go on: rays; two a path, reflectance and density, and the cells that the path fills.
-layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { Ray next_rays[]; };
+// Of paths that go on, two a path each: rays; reflectance and density, and the cells that the path fills.
+layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { vec4 next_rays[]; };
 layout(std430, binding = BINDING_SAMPLE_STATES) writeonly buffer States { vec4 next_states[]; };
 
 uniform uint path_count;
@@ -76,9 +77,24 @@ bool is_above(HitPoint point, vec3 in_direction, vec3 in_ws) {
   return in_direction.z > 0.0 && dot(in_ws, point.geometric_normal_ws) > 0.0;
 }
 
-vec3 sample_lights(PathVertex at, Hit hit, HitPoint point, mat3 frame) {
-  Ray ray = kNoRay;
-  vec3 value = vec3(0.0);
+struct Cells {
+  uint fine, coarse;
+};
+
+// What a path finds, and how it goes on.
+struct Step {
+  vec3 known;
+  vec3 waiting;     // for the shadow ray
+  Ray shadow_ray;
+  Ray ray;
+  vec3 reflected_share;
+  float pdf;
+  Cells cells;
+  float distance_m;
+  bool own_path;    // what comes along the ray counts for the slot itself
+};
+
+void sample_lights(inout Step next, PathVertex at, Hit hit, HitPoint point, mat3 frame) {
 #if defined(LIGHTS_PUNCTUAL) || defined(LIGHTS_TRIANGLES) || defined(LIGHTS_ENVIRONMENT)
   const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kLight));
   const vec2 u_choice = sobol_2d(at.number, decision_seed(at.seed, kLightChoice));
@@ -87,23 +103,17 @@ vec3 sample_lights(PathVertex at, Hit hit, HitPoint point, mat3 frame) {
   // The rays that may find the same light are sampled by the cosine.
   const float weight = lamp.pdf > 0.0 ? mis_weight(lamp.pdf, in_direction.z / kPi) : 1.0;
   if (is_above(point, in_direction, lamp.to_light_ws))
-    value = brdf_times_cosine(point.brdf, -at.ray.direction_ws * frame, in_direction) * lamp.value * weight;
-  if (greatest(value) > 0.0)
-    ray = shadow_ray(lifted(point.position_ws, point.geometric_normal_ws, hit.t, lamp.to_light_ws), point.position_ws,
-                     lamp);
+    next.waiting = brdf_times_cosine(point.brdf, -at.ray.direction_ws * frame, in_direction) * lamp.value * weight;
+  if (greatest(next.waiting) > 0.0)
+    next.shadow_ray = shadow_ray(lifted(point.position_ws, point.geometric_normal_ws, hit.t, lamp.to_light_ws),
+                                 point.position_ws, lamp);
 #endif
-  shadow_rays[at.slot] = ray;
-  return value;
 }
 
 // What the surface sends back of light that arrives from everywhere alike.
 vec3 reflectance(PathVertex at, HitPoint point) {
   return directional_albedo(point.brdf, max(dot(point.surface.normal_ws, -at.ray.direction_ws), 0.0));
 }
-
-struct Cells {
-  uint fine, coarse;
-};
 
 Cells cells_at(PathVertex at, Hit hit, HitPoint point, bool fills) {
   const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kCell));
@@ -122,26 +132,13 @@ CellValue light_of(Cells cells) {
   return coarse;
 }
 
-// The ray of a path that goes on, with the hit's reflectance and the cells that it fills.
-void go_on(PathVertex at, Hit hit, HitPoint point, mat3 frame, Cells cells, vec3 reflected_share) {
+// The ray of the path, should it go on.
+void go_on(inout Step next, PathVertex at, Hit hit, HitPoint point, mat3 frame) {
   const vec3 in_direction = cosine_hemisphere(sobol_2d(at.number, decision_seed(at.seed, kDirection)));
   const vec3 in_ws = normalize(frame * in_direction);
-  const bool alive = is_above(point, in_direction, in_ws);
-  const vec3 origin_ws = lifted(point.position_ws, point.geometric_normal_ws, hit.t, in_ws);
-  next_rays[at.next] = Ray(origin_ws, 0.0, in_ws, alive ? 1e30 : -1.0);
-  next_states[2u * at.next] = vec4(reflected_share, alive ? in_direction.z / kPi : 0.0);
-  next_states[2u * at.next + 1u] = vec4(uintBitsToFloat(cells.fine), uintBitsToFloat(cells.coarse), 0.0, 0.0);
-}
-
-void end_path(uint next) {
-  next_rays[next] = kNoRay;
-  next_states[2u * next] = vec4(0.0);
-  next_states[2u * next + 1u] = vec4(uintBitsToFloat(uvec2(kNoCell)), 0.0, 0.0);
-}
-
-void finish(uint slot, vec3 known, vec3 waiting, float distance_m, float own_path) {
-  light[2u * slot] = vec4(known, distance_m);
-  light[2u * slot + 1u] = vec4(waiting, own_path);
+  if (!is_above(point, in_direction, in_ws)) return;
+  next.ray = Ray(lifted(point.position_ws, point.geometric_normal_ws, hit.t, in_ws), 0.0, in_ws, 1e30);
+  next.pdf = in_direction.z / kPi;
 }
 
 const uint kNowhere = 0xffffffffu;
@@ -173,35 +170,63 @@ PathVertex vertex_of(uint slot) {
   return at;
 }
 
-void main() {
-  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
-  if (slot >= path_count) return;
-  const PathVertex at = vertex_of(slot);
-  const bool goes_on = at.next != kNowhere;
-  const Hit hit = fetch_hit(int(slot));
-  if (hit.t < 0.0) {
-    shadow_rays[slot] = kNoRay;
-    if (goes_on) end_path(at.next);
-    finish(slot, at.ray.t_max > 0.0 ? light_of_miss(at) : vec3(0.0), vec3(0.0), -1.0, 0.0);
-    return;
-  }
+Step nothing() {
+  return Step(vec3(0.0), vec3(0.0), kNoRay, kNoRay, vec3(0.0), 0.0, Cells(kNoCell, kNoCell), -1.0, false);
+}
+
+Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
+  Step next = nothing();
   HitPoint point = hit_point(at.ray, hit, hit.t * kFootprintPerMetre);
   const bool lit = (point.material_flags & kMaterialUnlit) == 0u;
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 reflected_share = reflectance(at, point);
   point.brdf = brdf_in_frame(point.brdf, frame);
-  vec3 known = emission_of(at, hit, point);
-  const vec3 waiting = sample_lights(at, hit, point, frame);
+  sample_lights(next, at, hit, point, frame);
   const Cells cells = cells_at(at, hit, point, goes_on && lit);
   const CellValue bounced = light_of(cells);
-  if (goes_on && lit) go_on(at, hit, point, frame, cells, reflected_share);
-  if (goes_on && !lit) end_path(at.next);
 #ifdef FIRST_HITS
-  const bool own_path = goes_on && bounced.samples < kFewSamples;
-#else
-  const bool own_path = false;
+  next.own_path = goes_on && bounced.samples < kFewSamples;
 #endif
-  if (cache_lights_hits == 1 && !own_path) known += bounced.light * reflected_share;
+  next.known = emission_of(at, hit, point);
+  if (cache_lights_hits == 1 && !next.own_path) next.known += bounced.light * reflected_share;
   const vec3 arriving = lit ? point.medium_transmittance : vec3(0.0);
-  finish(slot, known * arriving, waiting * arriving, hit.t, own_path ? 1.0 : 0.0);
+  next.known *= arriving;
+  next.waiting *= arriving;
+  next.distance_m = hit.t;
+  if (lit) {
+    go_on(next, at, hit, point, frame);
+    next.reflected_share = reflected_share;
+    next.cells = cells;
+  }
+  return next;
+}
+
+void write(PathVertex at, Step next) {
+  const uint slot = at.slot;
+  shadow_rays[2u * slot] = vec4(next.shadow_ray.origin_ws, next.shadow_ray.t_min);
+  shadow_rays[2u * slot + 1u] = vec4(next.shadow_ray.direction_ws, next.shadow_ray.t_max);
+  light[2u * slot] = vec4(next.known, next.distance_m);
+  light[2u * slot + 1u] = vec4(next.waiting, next.own_path ? 1.0 : 0.0);
+  if (at.next == kNowhere) return;
+  next_rays[2u * at.next] = vec4(next.ray.origin_ws, next.ray.t_min);
+  next_rays[2u * at.next + 1u] = vec4(next.ray.direction_ws, next.ray.t_max);
+  next_states[2u * at.next] = vec4(next.reflected_share, next.pdf);
+  next_states[2u * at.next + 1u] = vec4(uintBitsToFloat(uvec2(next.cells.fine, next.cells.coarse)), 0.0, 0.0);
+}
+
+// Hardly with a branch, for under one a software device reads uniforms once a lane: a miss looks at any surface for
+// nothing, and what is beyond the last slot does it once more.
+void main() {
+  const uint invocation = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  const PathVertex at = vertex_of(min(invocation, path_count - 1u));
+  Hit hit = fetch_hit(int(at.slot));
+  const bool missed = hit.t < 0.0;
+  if (missed) hit = Hit(1.0, 0u, 0u, 0.0, 0.0);
+  Step next = meet_surface(at, hit, at.next != kNowhere && !missed);
+  const vec3 sky = light_of_miss(at);
+  if (missed) {
+    next = nothing();
+    next.known = at.ray.t_max > 0.0 ? sky : vec3(0.0);
+  }
+  write(at, next);
 }

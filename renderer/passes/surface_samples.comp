@@ -22,9 +22,10 @@ layout(local_size_x = 64) in;
 #include "shaders/next_event.glsl"
 #endif
 
-layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { Ray rays[]; };
+// By four words: on a software device every store is a loop over the lanes.
+layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { vec4 rays[]; };        // 2 a ray
 layout(std430, binding = BINDING_SAMPLE_STATES) writeonly buffer States { vec4 states[]; };  // weight; density
-layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { vec4 shadow_rays[]; };  // 2 a ray
 layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
 
 uniform uint sample_count;  // texels * rays_per_texel
@@ -56,7 +57,8 @@ void sample_direction(uint slot, uint ray, uint texel_seed, SurfaceFrame at) {
   const float pdf = brdf_pdf(at.brdf, at.out_direction, in_direction);
   const bool active_ray = at.point.valid && pdf > 0.0 && sides_agree(at, in_direction, in_ws);
   const vec3 value = brdf_times_cosine(at.brdf, at.out_direction, in_direction) / at.albedo;
-  rays[slot] = Ray(lifted_origin(at, in_direction.z < 0.0), 0.0, in_ws, active_ray ? 1e30 : -1.0);
+  rays[2u * slot] = vec4(lifted_origin(at, in_direction.z < 0.0), 0.0);
+  rays[2u * slot + 1u] = vec4(in_ws, active_ray ? 1e30 : -1.0);
   states[slot] = vec4(active_ray ? value / max(pdf, 1e-20) : vec3(0.0), pdf);
 }
 
@@ -75,14 +77,18 @@ void sample_lamp(uint texel_index, uint texel_seed, SurfaceFrame at) {
             mis_weight(lamp.pdf, rays_pdf);
   Ray ray = kNoRay;
   if (greatest(value) > 0.0) ray = shadow_ray(lifted_origin(at, in_direction.z < 0.0), at.point.position_ws, lamp);
-  shadow_rays[sample_count + texel_index] = ray;
+  const uint ray_index = sample_count + texel_index;
+  shadow_rays[2u * ray_index] = vec4(ray.origin_ws, ray.t_min);
+  shadow_rays[2u * ray_index + 1u] = vec4(ray.direction_ws, ray.t_max);
   light[2u * sample_count + texel_index] = vec4(value, 0.0);
 }
 #endif
 
+// Without a branch, for under one a software device reads uniforms once a lane; what is beyond the last slot does it once
+// more.
 void main() {
-  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
-  if (slot >= sample_count) return;
+  const uint invocation = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  const uint slot = min(invocation, sample_count - 1u);
   const uint texels = uint(map_size_px.x * map_size_px.y);
   const uint texel_index = slot % texels;
   const ivec2 texel = ivec2(texel_index % uint(map_size_px.x), texel_index / uint(map_size_px.x));

@@ -18,7 +18,7 @@ constexpr std::uint32_t kSettlingFrames = 32;
 
 TemporalAntialiasingPass::TemporalAntialiasingPass(gl::ShaderLibrary& shaders)
     : variants_([&shaders](const gl::Defines& defines) {
-        return shaders.raster("passes/full_screen.vert", "passes/temporal_antialiasing.frag", defines);
+        return shaders.raster("passes/full_screen_camera.vert", "passes/temporal_antialiasing.frag", defines);
       }) {}
 
 void TemporalAntialiasingPass::resize(glm::ivec2 size_px) {

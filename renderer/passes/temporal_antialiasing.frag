@@ -3,6 +3,7 @@
 // that are around it now (Lottes 2011; Karis 2014, without weights by luminance: light stays as much as it is).
 // REFINE: nothing has changed, and the mean of all frames is wanted.
 #include "passes/bindings.glsl"
+#define FLAT_CAMERA
 #include "shaders/camera.glsl"
 #include "shaders/finite.glsl"
 
