@@ -47,7 +47,7 @@ const char* what_is_wrong(std::span<const std::uint8_t> message) {
   if (load<std::uint32_t>(message, 0) != kFrameMagic) return "not a frame: wrong magic";
   if (message[4] != kFrameVersion) return "unknown frame version";
   if (message[5] != kFrameType) return "unknown frame type";
-  if (message[6] != 1 && message[6] != 2) return "unknown frame codec";
+  if (message[6] < 1 || message[6] > 3) return "unknown frame codec";
   const FrameHeader header = load_header(message);
   if (header.frame == 0) return "frame id 0";
   if (!std::isfinite(header.capture_ms)) return "capture time is not finite";

@@ -13,7 +13,7 @@ inline constexpr std::size_t kFrameHeaderBytes = 48;
 inline constexpr std::uint32_t kFrameMagic = 0x3146574c;  // "LWF1"
 inline constexpr std::uint8_t kFrameVersion = 1;
 
-enum class FrameCodec : std::uint8_t { kJpeg = 1, kPng = 2 };
+enum class FrameCodec : std::uint8_t { kJpeg = 1, kPng = 2, kH264 = 3 };
 
 struct FrameHeader {
   FrameCodec codec = FrameCodec::kJpeg;

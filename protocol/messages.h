@@ -225,12 +225,18 @@ struct Ack {
   bool operator==(const Ack&) const = default;
 };
 
+/// The client has trouble with video: it goes on with JPEG alone.
+struct Demotion {
+  std::string reason;  // for the server's log, at most 256 bytes
+  bool operator==(const Demotion&) const = default;
+};
+
 struct Ping {
   double t = 0.0;
   bool operator==(const Ping&) const = default;
 };
 
-using ClientMessage = std::variant<Hello, Input, Look, Ack, Ping>;
+using ClientMessage = std::variant<Hello, Input, Look, Ack, Demotion, Ping>;
 
 // From the server.
 

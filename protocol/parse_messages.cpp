@@ -41,6 +41,10 @@ void read_message(ObjectReader& object, Ack& out) {
   object.optional("held_ms", out.held_ms, read_any_number);
 }
 
+void read_message(ObjectReader& object, Demotion& out) {
+  object.required("reason", out.reason, ReadString{1, 256});
+}
+
 void read_message(ObjectReader& object, Ping& out) {
   object.required("t", out.t, read_any_number);
 }
@@ -188,9 +192,9 @@ constexpr MessageKind<Variant> kind(std::string_view type) {
   return {type, [](ObjectReader& object, Variant& out) { read_message(object, out.template emplace<Message>()); }};
 }
 
-constexpr std::array kClientKinds{kind<Hello, ClientMessage>("hello"), kind<Input, ClientMessage>("input"),
-                                  kind<Look, ClientMessage>("look"), kind<Ack, ClientMessage>("ack"),
-                                  kind<Ping, ClientMessage>("ping")};
+constexpr std::array kClientKinds{kind<Hello, ClientMessage>("hello"),       kind<Input, ClientMessage>("input"),
+                                  kind<Look, ClientMessage>("look"),         kind<Ack, ClientMessage>("ack"),
+                                  kind<Demotion, ClientMessage>("demotion"), kind<Ping, ClientMessage>("ping")};
 constexpr std::array kServerKinds{kind<Welcome, ServerMessage>("welcome"),
                                   kind<StateUpdate, ServerMessage>("state"),
                                   kind<PoseUpdate, ServerMessage>("pose"),

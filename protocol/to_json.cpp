@@ -97,6 +97,8 @@ struct MessageWriter {
     return object;
   }
 
+  Json operator()(const Demotion& demotion) const { return {{"type", "demotion"}, {"reason", demotion.reason}}; }
+
   Json operator()(const Ping& ping) const { return {{"type", "ping"}, {"t", number(ping.t)}}; }
   Json operator()(const Pong& pong) const { return {{"type", "pong"}, {"t", number(pong.t)}}; }
 

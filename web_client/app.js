@@ -12,13 +12,14 @@ import { OrbitCamera } from "./orbit_camera.js";
 import { Panel } from "./panel.js";
 import { wanted_size } from "./picture_size.js";
 import { problem_from, words_of } from "./problem.js";
-import { ack, ProtocolError } from "./protocol.js";
+import { ack, demotion, ProtocolError } from "./protocol.js";
 import { SessionModel } from "./session_model.js";
 import { hash_of, parse_hash } from "./share.js";
 import { listen_for_shortcuts } from "./shortcuts.js";
 import { Stats } from "./stats.js";
 import { Transport } from "./transport.js";
 import { Uploader } from "./upload.js";
+import { can_decode_video } from "./video_pictures.js";
 import { Watching, watch_link } from "./watching.js";
 import { connect_chrome } from "./chrome.js";
 
@@ -46,7 +47,8 @@ const watching = new Watching(wished.watch, {
 });
 const model = new SessionModel((seq, member) => inputs.is_newer_than(seq, member));
 const orbit = new OrbitCamera();
-const frames = new FrameView(document.getElementById("picture"), frame_done);
+const frames = new FrameView(document.getElementById("picture"), frame_done, give_up_video);
+let takes_video = false;
 const banner = new Banner(() => connection.connect());
 
 function send_input(seq, change) {
@@ -107,7 +109,12 @@ const connection = new Connection(base, access, {
     const { scene, settings, time_s } = model;
     return { ...request, scene, camera: model.camera, settings, time_s };
   },
-  hello: () => ({ codecs: ["jpeg"], ...current_size(), device_pixel_ratio: devicePixelRatio, role: watching.role }),
+  hello: () => ({
+    codecs: takes_video ? ["h264", "jpeg"] : ["jpeg"],
+    ...current_size(),
+    device_pixel_ratio: devicePixelRatio,
+    role: watching.role,
+  }),
   on_state: connection_state,
   on_welcome: welcomed,
   on_message: (message) => {
@@ -158,6 +165,7 @@ function welcomed(message, is_new_session) {
   const { camera: own_camera, settings, playing, edits } = model;
   const lost = inputs.has_unanswered() && !is_new_session;
   held_acks = [];
+  frames.restart();
   stats.restart();
   model.poses.clear();
   if (is_new_session) inputs.restart();
@@ -174,7 +182,7 @@ function welcomed(message, is_new_session) {
 /** The server refused an input: says so, and shows again what really is. */
 async function refused(message) {
   show_note(words_of(message.problem, message.problem?.status), "trouble");
-  watching.lost();
+  if (message.seq) watching.lost();  // else it is trouble of the server's own
   await show_what_is();
 }
 
@@ -182,6 +190,14 @@ async function show_what_is() {
   const address = new URL(`v1/sessions/${connection.session}`, base);
   const response = await fetch(address, { cache: "no-store", headers: access.headers() }).catch(() => null);
   if (response?.ok) model.apply({ ...(await response.json()), type: "session" });
+}
+
+/** JPEG from here on: the server is told, and the user why. */
+function give_up_video(reason) {
+  if (!takes_video) return;
+  takes_video = false;
+  connection.send(demotion(reason));
+  show_note(`Video makes trouble here (${reason}): pictures are JPEG from now on.`, "trouble");
 }
 
 function frame_done(frame, times) {
@@ -192,7 +208,8 @@ function frame_done(frame, times) {
   model.frame_shown(header);
   stats.frame_shown(frame, times, inputs.answered(header.input_seq, times.shown_ms));
   pictures_shown += 1;
-  Object.assign(stage.dataset, { shown: pictures_shown, seq: header.input_seq, final: header.is_final });
+  const { input_seq: seq, is_final: final, codec } = header;
+  Object.assign(stage.dataset, { shown: pictures_shown, seq, final, codec });
   handles.place();
   chrome.show_status();
 }
@@ -300,4 +317,5 @@ listen_for_shortcuts({
   "?": () => chrome.open_help(),
 });
 
+takes_video = await can_decode_video();
 connection.connect();

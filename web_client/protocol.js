@@ -22,11 +22,11 @@ export class ProtocolError extends Error {
 // Frames.
 
 const frame_magic = 0x3146574c;
-const frame_codecs = [null, "jpeg", "png"];
+const frame_codecs = [null, "jpeg", "png", "h264"];
 
 /**
  * A binary message as {header, payload}: `payload` is a Uint8Array on the message's own memory, `header` has codec
- * ("jpeg" or "png"), is_key, is_final, is_lossless, frame, input_seq, scene_revision (a BigInt), capture_ms,
+ * ("jpeg", "png" or "h264"), is_key, is_final, is_lossless, frame, input_seq, scene_revision (a BigInt), capture_ms,
  * scene_time_s, width, height, payload_bytes and render_ms.
  */
 export function decode_frame(buffer) {
@@ -236,6 +236,7 @@ const client_messages = {
   look: object({ type: any, seq: sequence }, { camera, width: pixels, height: pixels }),
   ack: object({ type: any, frame: sequence },
     { received_ms: number(), decoded_ms: number(), shown_ms: number(), queue: u32, held_ms: number() }),
+  demotion: object({ type: any, reason: string(1, 256) }),
   ping: object({ type: any, t: number() }),
 };
 
@@ -328,6 +329,11 @@ export function look(seq, own = {}) {
 /** `timing`: what is known of received_ms, decoded_ms, shown_ms and queue. */
 export function ack(frame, timing = {}) {
   return client_text({ type: "ack", frame, queue: 0, ...timing });
+}
+
+/** Video makes trouble here: JPEG alone from now on. @param {string} reason its beginning is sent */
+export function demotion(reason) {
+  return client_text({ type: "demotion", reason: [...reason].slice(0, 64).join("") });
 }
 
 export function ping(t) {

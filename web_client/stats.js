@@ -7,6 +7,7 @@ const kSmooth = 0.25;  // share of a new value in a figure that would flicker ot
 const kParts = [
   ["render", "Render"], ["encode", "Encode"], ["network", "Network and waiting"], ["show", "Decode and show"],
 ];
+const kCodecNames = { jpeg: "JPEG", png: "PNG", h264: "H.264" };
 const kFacts = ["Rays", "Triangles", "Picture", "Received", "Exposure", "Device"];
 
 /** 1234567 as "1.23M", 1522 as "1,522". */
@@ -23,6 +24,8 @@ export const short_ms = (ms) => (ms < 9.95 ? ms.toFixed(1) : String(Math.round(m
 function write(element, text) {
   if (element.textContent !== String(text)) element.textContent = text;
 }
+
+const picture_fact = ({ width, height, codec }) => `${width} × ${height}, ${kCodecNames[codec]}`;
 
 export class Stats {
   /** @param {object} model a SessionModel @param {HTMLElement} section the panel's place for it */
@@ -141,7 +144,7 @@ export class Stats {
     const facts = [
       `${short_number(rays)} / frame · ${short_number(rays * rate)} / s`,
       short_number(this.server?.triangles ?? this.model.scene_entry().triangles ?? 0),
-      this.frame ? `${this.frame.header.width} × ${this.frame.header.height}` : "–",
+      this.frame ? picture_fact(this.frame.header) : "–",
       `${((received * 8) / 1e6).toFixed(1)} Mbit/s`,
       this.server ? `${this.server.exposure_ev.toFixed(1)} EV` : "–",
       this.model.device || "–",

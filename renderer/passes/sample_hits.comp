@@ -44,10 +44,6 @@ uniform int cache_lights_hits; // 0: not in the last bounces
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 const float kSideOverDistance = 0.5;   // of a cell over the length of the ray that came to it
 
-// What a smooth surface mirrors of a light into other surfaces, rays find as rare bright spots: at hits it is as rough as this
-// at least (Kaplanyan and Dachsbacher 2013, "Path space regularization for holistic and robust light transport").
-const float kLeastAlphaAtHits = 0.25;
-
 struct PathVertex {
   uint slot;
   uint next;         // where its path goes on
@@ -185,7 +181,6 @@ Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 reflected_share = reflectance(at, point);
   point.brdf = brdf_in_frame(point.brdf, frame);
-  point.brdf.alpha = max(point.brdf.alpha, kLeastAlphaAtHits);
   sample_lights(next, at, hit, point, frame);
   const Cells cells = cells_at(at, hit, point, goes_on && lit);
   const CellValue bounced = light_of(cells);

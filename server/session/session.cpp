@@ -10,6 +10,18 @@ using protocol::make_problem;
 using protocol::Problem;
 using std::chrono::steady_clock;
 
+namespace {
+
+/// The first of those that the client takes which this server has.
+std::string codec_for(const protocol::Hello& hello) {
+  const auto chosen = std::find_if(hello.codecs.begin(), hello.codecs.end(), [](const std::string& codec) {
+    return codec == "jpeg" || (codec == "h264" && can_encode_video());
+  });
+  return chosen != hello.codecs.end() ? *chosen : "jpeg";
+}
+
+}  // namespace
+
 Session::Session(std::string id, SessionState state, const SessionSurroundings& surroundings, double idle_s)
     : id_(std::move(id)),
       surroundings_(surroundings),
@@ -157,7 +169,7 @@ protocol::Decoded<std::shared_ptr<Viewer>> Session::open_stream(bool may_drive) 
 
 protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello, Viewer& viewer) {
   if (std::find(hello.codecs.begin(), hello.codecs.end(), "jpeg") == hello.codecs.end())
-    return make_problem(422, "this server sends jpeg alone, which the client does not take", "/codecs");
+    return make_problem(422, "every client takes jpeg, whatever else it takes", "/codecs");
   if (hello.resume) resume(*hello.resume);
   const protocol::Role role = seat(hello.role, viewer);
   if (role == protocol::Role::kDriver) {
@@ -173,6 +185,7 @@ protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello
   if (!state->moving()) audience_.show_latest(viewer, state->revision);
   protocol::Welcome answer = welcome(*state);
   answer.role = role;
+  answer.codec = codec_for(hello);
   return answer;
 }
 
@@ -198,7 +211,6 @@ protocol::Welcome Session::welcome(const SessionState& state) const {
   const ServeLimits& limits = surroundings_.rules.limits;
   protocol::Welcome welcome;
   welcome.session = id_;
-  welcome.codec = "jpeg";
   welcome.scene = state.scene_name;
   welcome.scenes = surroundings_.rules.scenes.entries();
   welcome.settings = spec_of(state.settings);

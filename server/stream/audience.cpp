@@ -50,9 +50,26 @@ bool Audience::wants_picture(int in_the_making) const {
 
 LinkPace Audience::pace() const {
   const auto all = spectators();
-  const auto driver = std::find_if(all.begin(), all.end(), [](const auto& viewer) { return viewer->drives(); });
-  if (driver != all.end()) return (*driver)->pace();
-  return all.empty() ? LinkPace() : all.front()->pace();
+  const Viewer* first = leader(all);
+  return first ? first->pace() : LinkPace();
+}
+
+PictureNeed Audience::need() const {
+  PictureNeed need;
+  const auto all = spectators();
+  const Viewer* first = leader(all);
+  for (const auto& viewer : all) {
+    const PictureNeed one = viewer->need();
+    if (viewer.get() == first) need.is_paced_by_video = one.video;
+    need.jpeg = need.jpeg || one.jpeg;
+    need.video = need.video || one.video;
+    need.key = need.key || one.key;
+  }
+  return need;
+}
+
+void Audience::demote(const protocol::Problem& problem) {
+  for (const auto& viewer : spectators()) viewer->demote(problem);
 }
 
 void Audience::show(std::shared_ptr<const Picture> picture) {
@@ -92,6 +109,14 @@ std::vector<std::shared_ptr<Viewer>> Audience::spectators() const {
   std::vector<std::shared_ptr<Viewer>> all = viewers();
   std::erase_if(all, [&](const auto& viewer) { return viewer->source() != source_; });
   return all;
+}
+
+/// Whose link pictures are made for: the driver, or who came first; null if nobody is there.
+const Viewer* Audience::leader(const std::vector<std::shared_ptr<Viewer>>& spectators) {
+  const auto driver =
+      std::find_if(spectators.begin(), spectators.end(), [](const auto& viewer) { return viewer->drives(); });
+  if (driver != spectators.end()) return driver->get();
+  return spectators.empty() ? nullptr : spectators.front().get();
 }
 
 std::vector<std::shared_ptr<Viewer>> Audience::viewers() const {

@@ -30,6 +30,11 @@ class Audience {
   /// The link that pictures are made for: the driver's, or of whoever came first. What others cannot take they skip.
   LinkPace pace() const;
 
+  /// As what the next picture is to be made for those who see this audience.
+  PictureNeed need() const;
+  /// Video makes trouble: everyone has JPEG from here on.
+  void demote(const protocol::Problem& problem);
+
   /// Gives everyone who sees this audience a picture, unless a newer one came before.
   void show(std::shared_ptr<const Picture> picture);
   /// `by`: the viewer whose input `seq` it was, or null.
@@ -43,6 +48,7 @@ class Audience {
  private:
   std::vector<std::shared_ptr<Viewer>> viewers() const;
   std::vector<std::shared_ptr<Viewer>> spectators() const;
+  static const Viewer* leader(const std::vector<std::shared_ptr<Viewer>>& spectators);
 
   const std::uint64_t source_;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/convert.h"
+#include "server/operations/log.h"
 #include "server/render/jpeg.h"
 
 namespace lightwell {
@@ -16,6 +17,7 @@ using std::chrono::steady_clock;
 constexpr std::uint32_t kFewestReferenceFrames = 32;
 constexpr auto kDevicePause = std::chrono::milliseconds(500);  // after the device was lost
 constexpr std::chrono::duration<double> kNearlyDone(0.008);    // a picture with no more to do is finished all the same
+constexpr auto kKeyInterval = std::chrono::seconds(2);         // between keys of video that were asked for
 constexpr int kSmallPicture = 256 * 256;                       // pixels: halved chroma saves little and shows
 
 }  // namespace
@@ -151,33 +153,83 @@ void Director::encode(Frame frame) {
   encoders_.try_post([this, made, take = take_, shared, number] { show(take, *shared, number); });
 }
 
-/// On an encoder's thread.
-void Director::show(const Take& take, const Frame& frame, std::uint64_t number) {
-  const SteadyTime start = steady_clock::now();
+/// What moves is video for those who take it. A key is large, and all who take video get it: however often someone
+/// falls behind or comes anew, they are rare, and who waits for one has files.
+PictureNeed Director::need_of(const Take& take, const Frame& frame, SteadyTime now) const {
+  PictureNeed need = session_->audience().need();
+  if (take.kind != Kind::kFresh || !need.video || !VideoEncoder::takes(frame.size_px)) return {.jpeg = true};
+  if (need.key && now - last_key_at_.load() < kKeyInterval) {
+    need.key = false;
+    need.jpeg = true;
+  }
+  return need;
+}
+
+/// None where the encoder fails: those who watch have JPEG from here on.
+std::optional<VideoPacket> Director::encode_video(const Take& take, const Frame& frame, bool want_key) {
+  Result<VideoPacket> packet = video_.encode(frame.display_rgbx, frame.size_px, take.grade.quality, want_key);
+  if (packet) {
+    if (packet->is_key) last_key_at_ = steady_clock::now();
+    return std::move(packet).value();
+  }
+  log_event(LogLevel::kError, "video_failed", {{"reason", packet.error().message()}});
+  session_->audience().demote(
+      protocol::make_problem(500, "video cannot be encoded any more: pictures are JPEG from here on"));
+  return {};
+}
+
+bool Director::encode_file(const Take& take, const Frame& frame, Picture& picture) const {
   const bool moving = take.kind == Kind::kFresh && frame.size_px.x * frame.size_px.y > kSmallPicture;
   auto file =
       encode_jpeg(frame.display_rgbx, frame.size_px, take.is_final ? options_.final_quality : take.grade.quality,
                   moving ? Chroma::kHalved : Chroma::kFull);
-  if (!file) return session_->audience().report(problem_of(file.error()));
+  if (!file) {
+    session_->audience().report(problem_of(file.error()));
+    return false;
+  }
+  picture.file = std::make_shared<const std::vector<std::uint8_t>>(std::move(file).value());
+  return true;
+}
+
+/// On an encoder's thread.
+void Director::show(const Take& take, const Frame& frame, std::uint64_t number) {
+  const SteadyTime start = steady_clock::now();
+  const PictureNeed need = need_of(take, frame, start);
+  auto picture = std::make_shared<Picture>();
+  if (need.jpeg && !encode_file(take, frame, *picture)) return;
+  std::lock_guard in_order(show_mutex_);
+  if (number < shown_number_) return;
+  shown_number_ = number;
+  if (need.video) picture->video = encode_video(take, frame, need.key);
+  if (take.is_final) video_.rest();
+  if (!picture->video && !picture->file && !encode_file(take, frame, *picture)) return;
+
+  const bool video_counts = picture->video && (need.is_paced_by_video || !picture->file);
+  const std::size_t bytes = video_counts ? picture->video->bytes->size() : picture->file->size();
   if (take.kind == Kind::kFresh) {
     std::lock_guard lock(grader_mutex_);
-    grader_.made(take.grade, static_cast<double>(file->size()), frame.total_ms * 1e-3);
+    grader_.made(take.grade, static_cast<double>(bytes), frame.total_ms * 1e-3);
   }
-
-  auto picture = std::make_shared<Picture>();
-  picture->source = session_->audience().source();
   picture->number = number;
-  picture->revision = take.state->revision;
-  picture->scene_revision = take.state->revision - take.state->looks;
-  picture->file = std::make_shared<const std::vector<std::uint8_t>>(std::move(file).value());
-  picture->is_final = take.is_final;
-  picture->capture_ms = std::chrono::duration<double, std::milli>(take.start.time_since_epoch()).count();
-  picture->width = static_cast<std::uint16_t>(frame.size_px.x);
-  picture->height = static_cast<std::uint16_t>(frame.size_px.y);
+  describe(take, frame, *picture);
+  picture->stats.encode_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
+  session_->picture_encoded(picture->stats.encode_ms * 1e-3, bytes);
+  session_->audience().show(std::move(picture));
+}
+
+/// Everything but the picture itself.
+void Director::describe(const Take& take, const Frame& frame, Picture& picture) const {
+  picture.source = session_->audience().source();
+  picture.revision = take.state->revision;
+  picture.scene_revision = take.state->revision - take.state->looks;
+  picture.is_final = take.is_final;
+  picture.capture_ms = std::chrono::duration<double, std::milli>(take.start.time_since_epoch()).count();
+  picture.width = static_cast<std::uint16_t>(frame.size_px.x);
+  picture.height = static_cast<std::uint16_t>(frame.size_px.y);
   const StagedScene& stage = *take.state->stage;
-  picture->placement = std::make_shared<const Placement>(
+  picture.placement = std::make_shared<const Placement>(
       Placement{view_at(*take.state, take.request.time_s), stage.lights(take.request.time_s)});
-  protocol::Stats& stats = picture->stats;
+  protocol::Stats& stats = picture.stats;
   for (const StageTime& stage_time : frame.stages)
     stats.stages.push_back({std::string(stage_time.name), stage_time.ms});
   stats.render_ms = frame.total_ms;
@@ -186,9 +238,6 @@ void Director::show(const Take& take, const Frame& frame, std::uint64_t number) 
   stats.exposure_ev = frame.exposure_ev;
   stats.accumulated = frame.accumulated;
   stats.time_s = take.request.time_s;
-  stats.encode_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
-  session_->picture_encoded(stats.encode_ms * 1e-3, picture->file->size());
-  session_->audience().show(std::move(picture));
 }
 
 }  // namespace lightwell

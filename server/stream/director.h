@@ -66,7 +66,11 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   Shot take_refining_shot();
   PictureGrade choose_grade();
   void encode(Frame frame);
+  PictureNeed need_of(const Take& take, const Frame& frame, SteadyTime now) const;
+  std::optional<VideoPacket> encode_video(const Take& take, const Frame& frame, bool want_key);
+  bool encode_file(const Take& take, const Frame& frame, Picture& picture) const;
   void show(const Take& take, const Frame& frame, std::uint64_t number);
+  void describe(const Take& take, const Frame& frame, Picture& picture) const;
 
   const std::shared_ptr<DirectedSession> session_;
   WorkerPool& encoders_;
@@ -76,6 +80,10 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   SteadyTime started_{}, last_started_{};       // the last picture that was not given up, and the one before it
   std::uint64_t finished_revision_ = 0;         // of the last picture that was finished
   std::chrono::duration<double> usual_time_{};  // of a fresh picture on the render thread, as the last one took
+  std::mutex show_mutex_;                       // pictures become video and are shown in their order
+  std::uint64_t shown_number_ = 0;              // of the newest picture shown
+  VideoEncoder video_;
+  std::atomic<SteadyTime> last_key_at_{};
   std::mutex grader_mutex_;
   PictureGrader grader_;
   SteadyTime still_since_{};       // the last picture that showed a change

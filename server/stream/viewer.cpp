@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/operations/log.h"
 #include "server/random_id.h"
 
 namespace lightwell {
@@ -75,6 +76,7 @@ void Viewer::received(const protocol::Hello& hello) {
     }
     welcome->resume = resume_token_;
     drives_ = welcome->role == protocol::Role::kDriver;
+    has_video_ = welcome->codec == "h264";
     placement_ = std::make_shared<const Placement>(Placement{welcome->view, welcome->lights});
     queue_text(*welcome);
     if (stage_ == Stage::kAwaitingHello) stage_ = Stage::kWatching;
@@ -124,6 +126,16 @@ void Viewer::received(const protocol::Ack& ack) {
   host_->window_opened();
 }
 
+void Viewer::received(const protocol::Demotion& demotion) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!has_video_) return;  // said once a stream, whatever the client repeats
+    has_video_ = false;
+  }
+  log_event(LogLevel::kWarning, "video_given_up", {{"reason", demotion.reason}});
+  host_->window_opened();
+}
+
 void Viewer::received(const protocol::Ping& ping) {
   std::lock_guard lock(mutex_);
   queue_text(protocol::Pong{ping.t});
@@ -149,7 +161,10 @@ void Viewer::offer(std::shared_ptr<const Picture> picture) {
 
 void Viewer::watch(std::uint64_t source, bool own_camera) {
   std::lock_guard lock(mutex_);
-  if (source_ != source) waiting_.reset();
+  if (source_ != source) {
+    waiting_.reset();
+    video_index_ = 0;
+  }
   source_ = source;
   own_camera_ = own_camera;
 }
@@ -175,6 +190,23 @@ void Viewer::state_changed(unsigned members, std::optional<std::uint32_t> seq) {
   if (seq) changed_by_seq_ = seq;
   changed_members_ |= members;
   wake();
+}
+
+PictureNeed Viewer::need() const {
+  std::lock_guard lock(mutex_);
+  if (stage_ != Stage::kWatching) return {};
+  PictureNeed need;
+  need.jpeg = !has_video_;
+  need.video = has_video_;
+  need.key = has_video_ && video_index_ == 0 && in_flight_.size() < kMostInFlight;  // else it could not be sent now
+  return need;
+}
+
+void Viewer::demote(const Problem& problem) {
+  std::lock_guard lock(mutex_);
+  if (!has_video_) return;
+  has_video_ = false;
+  queue_text(protocol::ErrorMessage{problem, {}});
 }
 
 void Viewer::report(const Problem& problem) {

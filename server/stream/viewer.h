@@ -68,6 +68,10 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
   /// Says bye and closes.
   void end(protocol::CloseCode code, const std::string& reason, bool reconnect);
 
+  /// As what the next picture is to be made for it.
+  PictureNeed need() const;
+  /// From here on it is sent JPEG alone, and told why.
+  void demote(const protocol::Problem& problem);
   /// What its link takes, as its acknowledgements tell.
   LinkPace pace() const;
   bool drives() const;
@@ -99,6 +103,7 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
   void take_numbered(const Message& message,
                      std::optional<protocol::Problem> (ViewerHost::*apply)(const Message&, Viewer&));
   void received(const protocol::Ack& ack);
+  void received(const protocol::Demotion& demotion);
   void received(const protocol::Ping& ping);
   void refuse_text(std::string_view text, const protocol::Problem& problem);
   void bad_message(const std::string& reason);
@@ -110,6 +115,7 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
   std::string take_state_update();
   std::string take_placement();
   net::Outgoing take_picture();
+  bool follows_on(const VideoPacket& packet) const;
   void note_arrival(const Sent& sent, const protocol::Ack& ack, SteadyTime now);
   void note_shown_inputs(std::uint64_t revision);
   void queue_stats(const Picture& picture, SteadyTime now);
@@ -124,6 +130,8 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
   std::shared_ptr<net::WebSocketLink> link_;
   enum class Stage { kAwaitingHello, kWatching, kEnding, kClosed } stage_ = Stage::kAwaitingHello;
   bool drives_ = false;
+  bool has_video_ = false;         // agreed to
+  std::uint64_t video_index_ = 0;  // of the packet sent last; 0: a key is needed
   std::uint64_t source_ = 0;
   bool own_camera_ = false;
   std::deque<std::string> texts_;             // small and few: welcome, pongs, errors, bye

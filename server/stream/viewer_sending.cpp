@@ -74,11 +74,22 @@ std::string Viewer::take_placement() {
   return protocol::serialize(protocol::PoseUpdate{last_frame_ + 1, placement_->view, placement_->lights});
 }
 
+/// Whether it can be decoded after what was sent.
+bool Viewer::follows_on(const VideoPacket& packet) const {
+  return packet.is_key || (video_index_ > 0 && packet.index == video_index_ + 1);
+}
+
 net::Outgoing Viewer::take_picture() {
   const std::shared_ptr<const Picture> picture = std::move(waiting_);
   const SteadyTime now = steady_clock::now();
+  const bool as_video = picture->video && has_video_ && follows_on(*picture->video);
+  if (picture->video) video_index_ = as_video ? picture->video->index : 0;
+  if (!as_video && !picture->file) return {};  // the next one is made for this viewer too
+  const auto& payload = as_video ? picture->video->bytes : picture->file;
   note_shown_inputs(picture->revision);
   protocol::FrameHeader header;
+  header.codec = as_video ? protocol::FrameCodec::kH264 : protocol::FrameCodec::kJpeg;
+  header.is_key = !as_video || picture->video->is_key;
   header.is_final = picture->is_final;
   header.frame = ++last_frame_;
   header.input_seq = shown_seq_;
@@ -87,16 +98,16 @@ net::Outgoing Viewer::take_picture() {
   header.scene_time_s = static_cast<float>(picture->stats.time_s);
   header.width = picture->width;
   header.height = picture->height;
-  header.payload_bytes = static_cast<std::uint32_t>(picture->file->size());
+  header.payload_bytes = static_cast<std::uint32_t>(payload->size());
   header.render_ms = static_cast<float>(picture->stats.render_ms);
-  const auto bytes_sent = static_cast<double>(picture->file->size());
+  const auto bytes_sent = static_cast<double>(payload->size());
   const double before = in_flight_.empty() ? 0.0 : in_flight_.back().bytes;
   in_flight_.push_back({last_frame_, now, bytes_sent, before + bytes_sent});
   sent_times_.push_back(now);
   queue_stats(*picture, now);
-  host_->picture_sent(picture->file->size());
+  host_->picture_sent(payload->size());
   const auto bytes = protocol::encode_frame_header(header);
-  return net::BinaryMessage{std::string(bytes.begin(), bytes.end()), picture->file};
+  return net::BinaryMessage{std::string(bytes.begin(), bytes.end()), payload};
 }
 
 void Viewer::note_arrival(const Sent& sent, const protocol::Ack& ack, SteadyTime now) {

@@ -32,9 +32,9 @@ export class Fixture {
     return this;
   }
 
-  /** One more viewer, with playwright's `options` for its window and `hash` in its address. */
-  open(options, hash = "") {
-    return ViewerPage.open(this.browser, this.address(hash), options);
+  /** One more viewer, with playwright's `options` for its window and `hash` in its address; `first` runs in it before. */
+  open(options, hash = "", first = undefined) {
+    return ViewerPage.open(this.browser, this.address(hash), options, first);
   }
 
   async stop() {

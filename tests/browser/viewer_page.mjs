@@ -14,11 +14,12 @@ export const open_browser = () => chromium.launch({ executablePath: kChromium, a
 
 export class ViewerPage {
   /** Opens the viewer in a context of its own, with playwright's `options` for it. */
-  static async open(browser, address, options) {
+  static async open(browser, address, options, first = undefined) {
     const viewer = new ViewerPage();
     viewer.context = await browser.newContext({ acceptDownloads: true, ...options });
     viewer.page = await viewer.context.newPage();
     viewer.errors = [];
+    if (first) await viewer.page.addInitScript(first);
     viewer.page.on("console", (message) => {
       if (["error", "warning"].includes(message.type())) viewer.errors.push(message.text());
     });
@@ -38,7 +39,7 @@ export class ViewerPage {
     for (;;) {
       const value = await read();
       if (test(value)) return value;
-      if (Date.now() > until_ms) assert.fail(`${what}: not within ${within_ms} ms; last seen ${JSON.stringify(value)} errors ${this.errors.slice(-6).join(" | ")}`);
+      if (Date.now() > until_ms) assert.fail(`${what}: not within ${within_ms} ms; last seen ${JSON.stringify(value)}; errors: ${this.errors.slice(-6).join(" | ")}`);
       await this.page.waitForTimeout(30);
     }
   }

@@ -13,6 +13,7 @@ import { hash_of, parse_hash } from "../../web_client/share.js";
 import { short_number } from "../../web_client/stats.js";
 import { refusal_of, scene_name_of } from "../../web_client/upload.js";
 import { shortest_rotation } from "../../web_client/vector.js";
+import { codec_name } from "../../web_client/video_pictures.js";
 import { picture_rect, project, unproject } from "../../web_client/view_math.js";
 
 const rect = { x: 0, y: 0, width: 800, height: 600 };
@@ -253,4 +254,13 @@ test("words: problems, numbers, titles", () => {
   assert.equal(words_of(null, 503), "The server answered 503.");
   assert.deepEqual([1522, 48210, 524288, 12.4e6].map(short_number), ["1,522", "48,210", "524k", "12.4M"]);
   assert.equal(scene_title("rigged-figure_2"), "Rigged figure 2");
+});
+
+test("a key's parameter sets name its codec; without them it is none", () => {
+  const supplement = [0, 0, 1, 6, 5, 1, 7, 128];
+  const parameters = [0, 0, 0, 1, 0x67, 0x42, 0xc0, 0x0d, 0xd9];
+  assert.equal(codec_name(Uint8Array.from([...supplement, ...parameters])), "avc1.42C00D");
+  for (const bytes of [[], supplement, [0, 0, 1, 0x67, 0x42, 0xc0]]) {
+    assert.throws(() => codec_name(Uint8Array.from(bytes)), /parameter sets/);
+  }
 });

@@ -29,7 +29,8 @@ std::vector<std::uint8_t> bytes_of(const std::string& hex) {
 
 FrameHeader header_of(const Json& json) {
   FrameHeader header;
-  header.codec = json.at("codec") == "jpeg" ? FrameCodec::kJpeg : FrameCodec::kPng;
+  const std::string codec = json.at("codec");
+  header.codec = codec == "jpeg" ? FrameCodec::kJpeg : codec == "png" ? FrameCodec::kPng : FrameCodec::kH264;
   header.is_key = json.at("is_key").get<bool>();
   header.is_final = json.at("is_final").get<bool>();
   header.is_lossless = json.at("is_lossless").get<bool>();

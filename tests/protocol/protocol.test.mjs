@@ -42,6 +42,7 @@ const build = {
   input: ({ type, seq, ...change }) => protocol.input(seq, change),
   look: ({ type, seq, ...own }) => protocol.look(seq, own),
   ack: ({ type, frame, ...timing }) => protocol.ack(frame, timing),
+  demotion: ({ reason }) => protocol.demotion(reason),
   ping: ({ t }) => protocol.ping(t),
 };
 
