@@ -67,10 +67,12 @@ std::variant<const Route*, Refusal> RouteTable::find(const net::RequestHead& hea
   for (const Route& route : routes_) {
     if (!head.path.starts_with('/') || !matches(route.path, head.path)) continue;
     if (route.method == method) return check_body(route, head);
+    if (route.is_page && method == "POST") continue;
     allowed.push_back(route.method);
     if (route.method == "GET") allowed.push_back("HEAD");
   }
-  if (allowed.empty()) return Refusal{404, "there is nothing at " + head.path, {}};
+  if (allowed.empty())
+    return Refusal{404, "there is nothing at " + head.path + (method == "POST" ? " to post to" : ""), {}};
   return Refusal{405, head.method + " is not allowed at " + head.path, {{"Allow", joined(allowed, ", ")}}};
 }
 

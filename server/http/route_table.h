@@ -26,6 +26,7 @@ struct Route {
   std::uint64_t max_body_bytes = 0;
   std::vector<std::string> content_types;  // that a body may have; empty: no body is taken
   Handler handler;
+  bool is_page = false;  // of the viewer: nothing is posted to it
 };
 
 class RouteTable {
@@ -33,7 +34,8 @@ class RouteTable {
   void add(Route route) { routes_.push_back(std::move(route)); }
   const std::vector<Route>& routes() const { return routes_; }
 
-  /// The route for a request, or why there is none: 404, 405 with Allow, 411, 413 or 415. HEAD is served as GET.
+  /// The route for a request, or why there is none: 404, 405 with Allow, 411, 413 or 415. HEAD is served as GET. Who
+  /// posts to a page has mistaken the address of what would take it: 404, as servers of files answer.
   std::variant<const Route*, net::Refusal> find(const net::RequestHead& head) const;
 
  private:

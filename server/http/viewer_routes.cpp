@@ -42,8 +42,8 @@ Response file_from_folder(const std::filesystem::path& path, std::string_view if
 }
 
 void add_file(http::RouteTable& table, const std::string& name, const http::Handler& handler) {
-  table.add({"GET", "/" + name, Scope::kPublic, http::Effort::kQuick, 0, {}, handler});
-  if (name == "index.html") table.add({"GET", "/", Scope::kPublic, http::Effort::kQuick, 0, {}, handler});
+  table.add({"GET", "/" + name, Scope::kPublic, http::Effort::kQuick, 0, {}, handler, true});
+  if (name == "index.html") table.add({"GET", "/", Scope::kPublic, http::Effort::kQuick, 0, {}, handler, true});
 }
 
 void add_folder(http::RouteTable& table, const std::filesystem::path& folder) {

@@ -34,7 +34,7 @@ class EchoSocket : public net::WebSocketHandler {
   std::deque<net::Outgoing> waiting_;
 };
 
-/// Answers any request with its method, path and body; opens a WebSocket on any path.
+/// Answers any request with its body, or, where it has none, with its method and path; opens a WebSocket on any path.
 class EchoApplication : public net::Application {
  public:
   explicit EchoApplication(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
@@ -45,7 +45,8 @@ class EchoApplication : public net::Application {
   }
   void answer(net::Request request, std::function<void(net::Answer)> done) override {
     const net::RequestHead& head = request.head;
-    done({response(200, head.method + " " + head.path + " " + request.body, request.keep_alive), nullptr});
+    const std::string words = request.body.empty() ? head.method + " " + head.path : request.body;
+    done({response(200, words, request.keep_alive), nullptr});
   }
   std::string refusal_response(const net::Refusal& refusal, bool keep_alive, const net::RequestHead*) override {
     return response(refusal.status, refusal.detail, keep_alive);
