@@ -36,6 +36,14 @@ class RendererSource : public PictureSource {
     return frame;
   }
 
+  /// llvmpipe compiles a shader anew for every texture whose width or height is a power of two where it was none
+  /// before, or the other way round: seconds and megabytes, in the middle of a stream, when a window changes its size
+  /// or a busy machine gives up resolution. Here are pictures, indirect maps and patches with such sides and without.
+  std::vector<glm::ivec2> sizes_to_warm_up() override {
+    if (!renderer_.context().device().software) return {};
+    return {{160, 96}, {200, 200}, {72, 40}, {256, 256}};
+  }
+
  private:
   /// What the device says of itself after a frame; null: nothing bad.
   static const char* device_loss() {
@@ -51,7 +59,8 @@ class RendererSource : public PictureSource {
   Renderer renderer_;
 };
 
-/// Loses its device once, after so many frames of this and earlier ones.
+/// Loses its device once, after so many frames of this and earlier ones. Warms nothing up: whoever counts frames means
+/// those that were asked for.
 class FaultySource : public PictureSource {
  public:
   FaultySource(std::unique_ptr<PictureSource> source, std::shared_ptr<std::atomic<int>> frames_left)

@@ -25,6 +25,9 @@ class PictureSource {
   virtual SourceFacts facts() = 0;
   virtual std::unique_ptr<RenderView> make_view() = 0;
   virtual Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view) = 0;
+  /// Pictures of these sizes, once made, spare later ones of any size that the device compiles shaders for them. The
+  /// most wanted first.
+  virtual std::vector<glm::ivec2> sizes_to_warm_up() { return {}; }
 };
 
 /// Called on the render thread. Throws as Renderer's constructor does.

@@ -21,6 +21,9 @@ namespace {
 
 using std::chrono::steady_clock;
 
+// Who has waited for the server to start comes at once, and wants a picture at once.
+constexpr auto kBeforeWarmingUpMore = std::chrono::seconds(3);
+
 struct Seat {
   std::shared_ptr<Subject> subject;
   std::shared_ptr<RenderAccount> account;
@@ -121,7 +124,7 @@ class Studio {
 
 struct RenderLoop::State {
   void run(const MakePictureSource& make_source, const std::function<Shot()>& warm_up);
-  void serve(Studio& studio);
+  void serve(Studio& studio, Shot warm_up);
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -142,10 +145,12 @@ struct RenderLoop::State {
 
 void RenderLoop::State::run(const MakePictureSource& make_source, const std::function<Shot()>& warm_up) {
   std::optional<Studio> studio;
+  Shot first;
   try {
     studio.emplace(make_source, observer);
     std::unique_ptr<RenderView> view;
-    if (Result<Frame> frame = studio->render(warm_up(), view); !frame)
+    first = warm_up();
+    if (Result<Frame> frame = studio->render(first, view); !frame)
       throw std::runtime_error("the first picture failed: " + frame.error().message());
     SourceFacts facts = studio->source().facts();
     warm = true;  // first: who has waited for the facts is not told to wait
@@ -154,10 +159,13 @@ void RenderLoop::State::run(const MakePictureSource& make_source, const std::fun
     ready_promise.set_exception(std::current_exception());
     return;
   }
-  serve(*studio);
+  serve(*studio, std::move(first));
 }
 
-void RenderLoop::State::serve(Studio& studio) {
+void RenderLoop::State::serve(Studio& studio, Shot warm_up) {
+  const std::vector<glm::ivec2> sizes = studio.source().sizes_to_warm_up();
+  const SteadyTime warm_up_from = steady_clock::now() + kBeforeWarmingUpMore;
+  std::size_t warmed_up = 0;
   for (;;) {
     {
       std::lock_guard lock(mutex);
@@ -171,6 +179,14 @@ void RenderLoop::State::serve(Studio& studio) {
     SteadyTime wake_at = kNever;
     if (Seat* seat = studio.choose(steady_clock::now(), wake_at)) {
       studio.render(*seat);
+      continue;
+    }
+    if (warmed_up < sizes.size()) wake_at = std::min(wake_at, warm_up_from);
+    if (warmed_up < sizes.size() && steady_clock::now() >= warm_up_from) {  // and nobody waits for a picture
+      warm_up.request.size_px = sizes[warmed_up++];
+      std::unique_ptr<RenderView> view;
+      if (const Result<Frame> frame = studio.render(warm_up, view); !frame)  // who asks for such a picture is told, too
+        log_event(LogLevel::kWarning, "warm_up_failed", {{"reason", frame.error().message()}});
       continue;
     }
     std::unique_lock lock(mutex);

@@ -1,8 +1,7 @@
 // Ten thousand random mutations of good requests: none makes the server fail, and the next good request is answered.
-#include <filesystem>
 #include <random>
 
-#include "server/random_id.h"
+#include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
@@ -96,9 +95,9 @@ class Mutator {
 };
 
 TEST(Mutations, NoneMakesTheServerFail) {
-  const auto folder = std::filesystem::temp_directory_path() / ("lightwell-" + random_id());
+  const DataFolder folder;
   ServeOptions options = test_options();
-  options.data_dir = folder.string();
+  options.data_dir = folder.path().string();
   options.access.requests_per_second = 0;
   options.limits.max_sessions = 100'000;
   options.limits.max_viewers_per_session = 100'000;
@@ -127,7 +126,6 @@ TEST(Mutations, NoneMakesTheServerFail) {
   EXPECT_EQ(ask(server.port(), "GET", "/v1/sessions/" + session).status, 200);
   EXPECT_EQ(ask(server.port(), "POST", "/v1/render", R"({"scene":"cornell","width":8,"height":8})").status, 200);
   for (const int wanted : {101, 200, 400, 404, 422}) EXPECT_GT(statuses[wanted], 50) << wanted;
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

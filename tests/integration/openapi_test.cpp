@@ -1,31 +1,29 @@
 // The server held against the document that describes it.
-#include <filesystem>
 #include <set>
 
 #include "protocol/openapi_document.h"
-#include "server/random_id.h"
+#include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
 namespace lightwell::test {
 namespace {
 
-ServeOptions options_with_folder() {
+ServeOptions options_with_folder(const std::filesystem::path& folder) {
   ServeOptions options = test_options();
-  options.data_dir = (std::filesystem::temp_directory_path() / ("lightwell-" + random_id())).string();
+  options.data_dir = folder.string();
   return options;
 }
 
-class OpenApiTest : public ServerTest {
+/// Its folder is a base before that of the server, so that it goes after it.
+class OpenApiTest : private DataFolder, public ServerTest {
  protected:
-  explicit OpenApiTest(const ServeOptions& options = options_with_folder())
-      : ServerTest(options), folder_(options.data_dir) {
+  OpenApiTest() : ServerTest(options_with_folder(DataFolder::path())) {
     const json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 0}};
     sequence_ = json::parse(ask("POST", "/v1/sequences", request).body)["id"];
     while (ask("GET", "/v1/sequences/" + sequence_ + "/archive").status != 200)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  ~OpenApiTest() override { std::filesystem::remove_all(folder_); }
 
   const json document_ = json::parse(protocol::openapi_document());
 
@@ -42,7 +40,6 @@ class OpenApiTest : public ServerTest {
   }
 
   const std::string session_ = make_session();
-  const std::string folder_;
   std::string sequence_;
 };
 

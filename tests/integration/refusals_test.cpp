@@ -1,9 +1,8 @@
 // Every refusal that the OpenAPI document shows is one that the server gives, in those words.
-#include <filesystem>
 #include <regex>
 
 #include "protocol/openapi_document.h"
-#include "server/random_id.h"
+#include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
@@ -110,9 +109,9 @@ void ask_what_means_nothing(Answers& answers) {
 
 void ask_for_sequences(Answers& answers) {
   answers["no_folder"] = Asked().until_ready().ask("GET", "/v1/sequences");
-  const auto folder = std::filesystem::temp_directory_path() / ("lightwell-" + random_id());
+  const DataFolder folder;
   ServeOptions options = test_options();
-  options.data_dir = folder.string();
+  options.data_dir = folder.path().string();
   options.limits.max_sequence_frames = 100;
   options.limits.max_sequence_bytes = 1;
   Asked asked(options);
@@ -137,7 +136,6 @@ void ask_for_sequences(Answers& answers) {
   answers["not_done"] = asked.ask("GET", slow + "/archive");
   asked.ask("DELETE", slow);
   asked.studio->held = false;
-  std::filesystem::remove_all(folder);
 }
 
 void ask_for_too_much(Answers& answers) {

@@ -3,8 +3,8 @@
 #include <future>
 #include <latch>
 
-#include "server/random_id.h"
 #include "server/sequences/job_table.h"
+#include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
 
@@ -15,9 +15,6 @@ const json kSmall{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_fram
 
 class SequenceTest : public testing::Test {
  protected:
-  SequenceTest() : folder_(std::filesystem::temp_directory_path() / ("lightwell-" + random_id())) {}
-  ~SequenceTest() override { std::filesystem::remove_all(folder_); }
-
   struct Running {
     std::shared_ptr<FakeStudio> studio = std::make_shared<FakeStudio>();
     std::unique_ptr<RunningServer> server;
@@ -43,7 +40,7 @@ class SequenceTest : public testing::Test {
     Running running;
     running.studio->render_ms = render_ms;
     ServeOptions options = test_options();
-    options.data_dir = folder_.string();
+    options.data_dir = folder_.path().string();
     options.access.requests_per_second = 0;
     options.limits.max_sequence_frames = 100;
     running.server = std::make_unique<RunningServer>(options, fake_source(running.studio));
@@ -51,13 +48,13 @@ class SequenceTest : public testing::Test {
     return running;
   }
 
-  const std::filesystem::path folder_;
+  const DataFolder folder_;
 };
 
 TEST_F(SequenceTest, ServersThatStartAtTheSameMomentShareANewFolder) {
-  std::filesystem::create_directories(folder_);
+  std::filesystem::create_directories(folder_.path());
   for (int round = 0; round < 20; ++round) {
-    const std::filesystem::path file = folder_ / (std::to_string(round) + ".sqlite");
+    const std::filesystem::path file = folder_.path() / (std::to_string(round) + ".sqlite");
     std::latch all_there(6);
     std::vector<std::future<void>> servers;
     for (int i = 0; i < 6; ++i)
@@ -189,7 +186,7 @@ TEST_F(SequenceTest, IsCancelledTakenUpAgainAndForgotten) {
   EXPECT_EQ(server.ask("DELETE", path).status, 204);
   EXPECT_EQ(problem(server.ask("GET", path))["status"], 404);
   EXPECT_EQ(problem(server.ask("GET", path + "/frames/0"))["status"], 404);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "sequences"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "sequences"));
 }
 
 TEST_F(SequenceTest, TellsItsProgressAsEvents) {
@@ -199,7 +196,7 @@ TEST_F(SequenceTest, TellsItsProgressAsEvents) {
   Line line(server.server->port());
   line.send("GET /v1/sequences/" + id + "/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_NE(line.receive_until("\r\n\r\n").find("text/event-stream"), std::string::npos);
-  const std::string first = line.receive_until("\n\n");
+  const std::string first = line.receive_until("event: running\ndata: {");  // maybe after "queued"
   EXPECT_NE(first.find("event: running\ndata: {"), std::string::npos) << first;
   server.studio->held = false;
   const std::string events = line.receive_until("\r\n0\r\n\r\n");
