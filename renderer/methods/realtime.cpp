@@ -15,6 +15,8 @@ constexpr std::uint32_t kFramesOfSamples = 16;
 // While the cache is young all paths go on, to fill it; later one of four.
 constexpr std::uint32_t kFillingFrames = 12, kPathStride = 4;
 
+constexpr float kReflectionsInMotion = 4.0f;  // frames kept
+
 constexpr float kGreatChange = 0.1f;  // of the light: the cache is filled anew
 
 // After as great a change of light as there is, what was known before counts for a quarter of a frame: 3 % of what is
@@ -23,7 +25,7 @@ constexpr float kKeptAfterChange = 0.25f;
 
 // What the history counts for, in frames. After motion it grows with the time since then, so that what has changed is
 // forgotten; likewise with the age of the cache while this carries bounces, for its first frames hold too little light.
-float kept_frames(const SceneChange& change, bool cache_carries, std::uint32_t since_motion, std::uint32_t age) {
+float frames_kept(const SceneChange& change, bool cache_carries, std::uint32_t since_motion, std::uint32_t age) {
   constexpr float kInMotion = 24.0f, kStill = 1024.0f, kOfTime = 0.5f, kOfAge = 0.25f;
   float most =
       change.moving ? kInMotion : std::min(kStill, 0.5f * kInMotion + kOfTime * static_cast<float>(since_motion));
@@ -41,6 +43,9 @@ RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       cache_(shaders),
       reconstruction_pass_(shaders),
       compose_pass_(shaders),
+      unmatched_pass_(shaders, buffers, PixelSamplesPass::Kind::kUnmatched),
+      reflections_pass_(shaders, buffers, PixelSamplesPass::Kind::kReflections),
+      front_(shaders, buffers),
       antialiasing_pass_(shaders),
       history_view_pass_(shaders) {}
 
@@ -53,7 +58,9 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   lights_.bind();
   motion_.follow(frame.pose);
   g_buffer_pass_.resize(frame.size_px);
-  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame_number_, &motion_);
+  const GBuffer& g_buffer =
+      g_buffer_pass_.run(frame.scene, frame.settings.seed + frame_number_, &motion_,
+                         frame.scene.has_clear() ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
   frame.timer.mark("g-buffer");
   punctual_light_pass_.resize(frame.size_px);
   const TracedLight& direct = punctual_light_pass_.run(frame, g_buffer, lights_, frame_number_);
@@ -63,23 +70,48 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   };
   const glm::mat4 previous_clip_from_world = clip_from_world(frame_number_ > 0 ? previous_camera_ : camera);
   const ReconstructedMap indirect = indirect_light(frame, g_buffer, previous_clip_from_world);
-  compose_pass_.resize(g_buffer.depth);
-  const bool accumulate = frame.accumulate && !frame.settings.temporal_antialiasing;
-  const ViewKind view = frame.settings.view;
-  const Picture& composed =
-      HistoryViewPass::shows(view)
-          ? compose_pass_.show(
-                frame.scene, g_buffer,
-                history_view_pass_.run(g_buffer, frame.scene, indirect, cache_, previous_clip_from_world, view),
-                frame.settings, accumulate)
-          : compose_pass_.run(frame.scene, g_buffer, direct, indirect, frame.settings, accumulate);
-  frame.timer.mark("compose");
+  const Picture& composed = compose(frame, g_buffer, direct, indirect, previous_clip_from_world);
   const bool unchanged =
       clip_from_world(camera) == previous_clip_from_world && !change_.moving && change_.light_share == 0.0f;
   const Picture& picture = over_time(frame, composed, g_buffer, previous_clip_from_world, unchanged);
   previous_camera_ = camera;
   ++frame_number_;
   return picture;
+}
+
+const Picture& RealtimeMethod::compose(FrameContext& frame, const GBuffer& g_buffer, const TracedLight& direct,
+                                       const ReconstructedMap& indirect, const glm::mat4& previous_clip_from_world) {
+  const Settings& settings = frame.settings;
+  compose_pass_.resize(g_buffer.depth);
+  const bool accumulate = frame.accumulate && !settings.temporal_antialiasing;
+  if (HistoryViewPass::shows(settings.view)) {
+    const gl::Texture& shown =
+        history_view_pass_.run(g_buffer, frame.scene, indirect, cache_, previous_clip_from_world, settings.view);
+    const Picture& picture = compose_pass_.show(frame.scene, g_buffer, shown, settings, accumulate);
+    frame.timer.mark("compose");
+    return picture;
+  }
+  const bool layered = frame.scene.has_clear();
+  const bool has_rays = settings.bounces > 0 && settings.view != ViewKind::kDirect;
+  pixel_lists_.resize(frame.size_px);
+  pixel_lists_.begin();
+  const Picture& picture =
+      compose_pass_.run(frame.scene, g_buffer, direct, indirect, has_rays ? &pixel_lists_ : nullptr, frame_number_,
+                        settings, accumulate && !layered);
+  frame.timer.mark("compose");
+  // Images in mirrors move by themselves: nothing tells where they were.
+  const float kept = change_.moving ? std::min(kept_frames(settings), kReflectionsInMotion) : kept_frames(settings);
+  const PixelSampling sampling{g_buffer, lights_, cache_, indirect, previous_clip_from_world, kept, frame_number_};
+  if (has_rays) {
+    pixel_lists_.count();
+    unmatched_pass_.run(frame, picture, pixel_lists_.unmatched(), pixel_lists_.unmatched_count(), sampling);
+    reflections_pass_.run(frame, picture, pixel_lists_.reflecting(), pixel_lists_.reflecting_count(), sampling);
+  }
+  return layered ? front_.run(frame, picture, sampling, has_rays, accumulate) : picture;
+}
+
+float RealtimeMethod::kept_frames(const Settings& settings) const {
+  return frames_kept(change_, settings.bounces > 2, frame_number_ - moved_in_, frame_number_ - filled_from_);
 }
 
 const Picture& RealtimeMethod::over_time(FrameContext& frame, const Picture& composed, const GBuffer& g_buffer,
@@ -116,9 +148,8 @@ ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuff
   cache_.begin_frame(frame.pose, change_);
   const std::uint32_t stride = frame_number_ - filled_from_ < kFillingFrames ? 1 : kPathStride;
   const PatchSamples& samples = samples_pass_.run(frame, g_buffer, lights_, cache_, grid, stride);
-  const ReconstructedMap map = reconstruction_pass_.run(
-      g_buffer, frame.scene, samples, grid, previous_clip_from_world,
-      kept_frames(change_, frame.settings.bounces > 2, frame_number_ - moved_in_, frame_number_ - filled_from_));
+  const ReconstructedMap map = reconstruction_pass_.run(g_buffer, frame.scene, samples, grid, previous_clip_from_world,
+                                                        kept_frames(frame.settings));
   frame.timer.mark("reconstruction");
   return map;
 }

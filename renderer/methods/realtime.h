@@ -4,12 +4,15 @@
 #pragma once
 
 #include "renderer/methods/frame_context.h"
+#include "renderer/methods/realtime_front.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/history_view.h"
 #include "renderer/passes/instance_motion.h"
 #include "renderer/passes/light_table.h"
 #include "renderer/passes/patch_samples.h"
+#include "renderer/passes/pixel_lists.h"
+#include "renderer/passes/pixel_samples.h"
 #include "renderer/passes/punctual_light.h"
 #include "renderer/passes/radiance_cache.h"
 #include "renderer/passes/reconstruction.h"
@@ -33,6 +36,9 @@ class RealtimeMethod {
  private:
   ReconstructedMap indirect_light(FrameContext& frame, const GBuffer& g_buffer,
                                   const glm::mat4& previous_clip_from_world);
+  const Picture& compose(FrameContext& frame, const GBuffer& g_buffer, const TracedLight& direct,
+                         const ReconstructedMap& indirect, const glm::mat4& previous_clip_from_world);
+  float kept_frames(const Settings& settings) const;
   const Picture& over_time(FrameContext& frame, const Picture& composed, const GBuffer& g_buffer,
                            const glm::mat4& previous_clip_from_world, bool unchanged);
   PatchGrid grid_of(const FrameContext& frame) const;
@@ -44,6 +50,9 @@ class RealtimeMethod {
   RadianceCache cache_;
   ReconstructionPass reconstruction_pass_;
   ComposePass compose_pass_;
+  PixelLists pixel_lists_;
+  PixelSamplesPass unmatched_pass_, reflections_pass_;
+  RealtimeFront front_;
   TemporalAntialiasingPass antialiasing_pass_;
   HistoryViewPass history_view_pass_;
   InstanceMotion motion_;

@@ -154,14 +154,41 @@ const Picture& ComposePass::run_over(const BehindClear& behind, const DeviceScen
 }
 
 const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
-                                const ReconstructedMap& indirect, const Settings& settings, bool accumulate) {
+                                const ReconstructedMap& indirect, const PixelLists* lists, std::uint32_t frame_number,
+                                const Settings& settings, bool accumulate) {
   g_buffer.bind();
   direct.light_texels.bind(UNIT_PUNCTUAL_LIGHT);
   direct.visible_texels.bind(UNIT_PUNCTUAL_VISIBLE);
   indirect.image->bind(UNIT_IMAGE_B);
   indirect.guide->bind(UNIT_GUIDE);
-  return draw(gl::joined(scene.brdf_defines(), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"}), scene.environment_defines(),
-              settings, accumulate);
+  gl::Defines defines =
+      gl::joined(gl::joined(scene.brdf_defines(), scene.smooth_defines()), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"});
+  if (lists) {
+    defines.emplace_back("LIST_PIXELS 1");
+    lists->bind();
+    Variant& variant = surfaces_.with(defines);
+    variant.unmatched_share = lists->unmatched_share();
+    variant.most_unmatched = lists->most_unmatched();
+    variant.frame_number = frame_number;
+  }
+  return draw(defines, scene.environment_defines(), settings, accumulate);
+}
+
+const Picture& ComposePass::run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
+                                     const TracedLight& direct, const PixelLists* lists, const Settings& settings,
+                                     bool accumulate) {
+  const gl::Defines over{"OVER_BEHIND 1"};
+  g_buffer.bind();
+  direct.light_texels.bind(UNIT_PUNCTUAL_LIGHT);
+  direct.visible_texels.bind(UNIT_PUNCTUAL_VISIBLE);
+  behind.picture.image.bind(UNIT_BEHIND);
+  behind.layers.bind(UNIT_CLEAR_LAYERS);
+  gl::Defines defines = gl::joined(gl::joined(scene.brdf_defines(), over), {"TRACED_LIGHT 1", "NO_MAP 1"});
+  if (lists) {
+    defines.emplace_back("LIST_PIXELS 1");
+    lists->bind();
+  }
+  return draw(defines, over, settings, accumulate);
 }
 
 const Picture& ComposePass::show(const DeviceScene& scene, const GBuffer& g_buffer, const gl::Texture& view_map,

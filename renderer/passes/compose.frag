@@ -1,6 +1,6 @@
 // The surfaces of the scene-referred picture: emission and direct light through the variance shadow maps (thesis 4.1), and the indirect
 // map scaled up bilinearly (thesis 5.3) and multiplied with the directional albedo it was divided by; or one of the
-// views. Blending averages with earlier frames; the depth test leaves the background to background.frag.
+// views. NO_MAP: all pixels get rays of their own. Blending averages with earlier frames; the depth test leaves the background to background.frag.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
@@ -12,10 +12,11 @@
 #include "shaders/lights.glsl"
 #endif
 #include "shaders/finite.glsl"
+#include "shaders/smooth_lobe.glsl"
+#include "shaders/upscaled_map.glsl"
 
 // a: 1 + luminance of all light on lit surfaces, so that every view is exposed alike; -1 on unlit surfaces.
 layout(location = 0) out vec4 picture;
-layout(binding = UNIT_IMAGE_B) uniform sampler2D indirect_map;
 layout(binding = UNIT_IMAGE_C) uniform sampler2D occlusion_distance;
 
 #ifdef AUXILIARY_VIEWS
@@ -55,40 +56,46 @@ vec4 over_behind(ivec2 pixel, vec4 own) {
 vec4 over_behind(ivec2 pixel, vec4 own) { return own; }
 #endif
 
-#ifdef JOINT_UPSCALE
-layout(binding = UNIT_GUIDE) uniform usampler2D guide;  // see indirect_filter.comp
+#ifdef LIST_PIXELS
+// Pixels that get rays of their own after this pass: see passes/pixel_samples.h.
+layout(early_fragment_tests) in;
+layout(std430, binding = BINDING_PIXEL_COUNTS) buffer PixelCounts { uint reflecting_count, unmatched_count, listed_count; };
+layout(std430, binding = BINDING_REFLECTING_PIXELS) writeonly buffer ReflectingPixels { uint reflecting_pixels[]; };
+layout(std430, binding = BINDING_UNMATCHED_PIXELS) writeonly buffer UnmatchedPixels { uint unmatched_pixels[]; };
+uniform float unmatched_share;  // of the unmatched pixels, so many are listed, of which there is room for most_unmatched
+uniform uint most_unmatched;
+uniform uint frame_number;
 
-// Joint bilateral upsampling (Kopf et al. 2007): of the four texels around, those on the pixel's own surface count. Not in
-// the thesis; goes with its filter.
-vec4 upscaled_map(GBufferPoint point, vec2 uv) {
-  const ivec2 size = textureSize(indirect_map, 0);
-  const vec2 position = uv * vec2(size) - 0.5;
-  const vec2 fraction = position - floor(position);
-  const float plane_scale = 1.0 / (0.01 * point.view_depth_m);
-  vec4 sum = vec4(0.0);
-  for (int i = 0; i < 4; ++i) {
-    const ivec2 corner = ivec2(i & 1, i >> 1);
-    const ivec2 texel = clamp(ivec2(floor(position)) + corner, ivec2(0), size - 1);
-    const uvec4 there = texelFetch(guide, texel, 0);
-    const vec3 normal_ws = unpack_normal_roughness(there.w).xyz;
-    const float off_plane = abs(dot(uintBitsToFloat(there.xyz) - point.position_ws, point.normal_ws)) * plane_scale;
-    const float facing = max(dot(normal_ws, point.normal_ws), 0.0);
-    const vec2 bilinear = mix(1.0 - fraction, fraction, vec2(corner));
-    // A little of plain bilinear remains, for pixels none of whose texels is similar.
-    const float weight = (bilinear.x * bilinear.y + 1e-3) * (facing * facing * facing * facing * exp2(-off_plane) + 1e-4);
-    sum += weight * texelFetch(indirect_map, texel, 0);
-  }
-  return sum;
+void list_pixel(ivec2 pixel, GBufferPoint point, bool matched) {
+  const uint word = uint(pixel.y << 16 | pixel.x);
+#ifdef NO_MAP
+  reflecting_pixels[atomicAdd(reflecting_count, 1u)] = word;
+#elif defined(SMOOTH_SURFACES)
+  if (is_smooth(point.brdf)) reflecting_pixels[atomicAdd(reflecting_count, 1u)] = word;
+#endif
+  if (matched) return;
+  atomicAdd(unmatched_count, 1u);
+  if (unit_interval(hash(word ^ hash(frame_number))) >= unmatched_share) return;
+  const uint place = atomicAdd(listed_count, 1u);
+  if (place < most_unmatched) unmatched_pixels[place] = word;
 }
 #else
-vec4 upscaled_map(GBufferPoint point, vec2 uv) { return textureLod(indirect_map, uv, 0.0); }
+void list_pixel(ivec2 pixel, GBufferPoint point, bool matched) {}
 #endif
 
-vec3 indirect_light(GBufferPoint point, vec2 uv) {
-  const vec4 demodulated = upscaled_map(point, uv);
-  const vec3 albedo = directional_albedo(point.brdf, max(dot(point.normal_ws, point.to_camera_ws), 0.0));
-  return demodulated.rgb / max(demodulated.a, 1e-7) * max(albedo, vec3(1e-4));
+#ifdef NO_MAP
+vec3 indirect_light(ivec2 pixel, GBufferPoint point, vec2 uv) {
+  list_pixel(pixel, point, true);
+  return vec3(0.0);
 }
+#else
+vec3 indirect_light(ivec2 pixel, GBufferPoint point, vec2 uv) {
+  const MapSample map = upscaled_map(point, uv);
+  list_pixel(pixel, point, map.matched);
+  point.brdf = brdf_of_map(point.brdf);
+  return modulated(point, map.light);
+}
+#endif
 
 #ifdef AUXILIARY_VIEWS
 vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
@@ -107,7 +114,7 @@ vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
 #else
 vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   const vec3 direct = direct_light(pixel, point);
-  const vec3 indirect = indirect_light(point, uv);
+  const vec3 indirect = indirect_light(pixel, point, uv);
   const vec3 shown = direct * (view == VIEW_FINAL || view == VIEW_DIRECT ? 1.0 : 0.0) +
                      indirect * (view == VIEW_DIRECT ? 0.0 : 1.0);
   return over_behind(pixel, vec4(shown, 1.0 + luminance(direct + indirect)));

@@ -9,6 +9,7 @@
 #include "renderer/gl/variants.h"
 #include "renderer/passes/gather.h"
 #include "renderer/passes/map_view.h"
+#include "renderer/passes/pixel_lists.h"
 #include "renderer/passes/punctual_light.h"
 #include "renderer/passes/reconstruction.h"
 #include "renderer/renderer.h"
@@ -58,9 +59,16 @@ class ComposePass {
   const Picture& run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
                           const ShadowMaps& shadows, const IndirectMap& indirect, const GatherPass& gathered,
                           const Settings& settings, bool accumulate);
-  /// The same with direct light by traced shadow rays and a map that was scaled with its guide; a view of light.
+  /// The same with direct light by traced shadow rays and a map that was scaled with its guide; a view of light. Pixels
+  /// that are to get rays of their own are put into `lists`, unless it is null.
   const Picture& run(const DeviceScene& scene, const GBuffer& g_buffer, const TracedLight& direct,
-                     const ReconstructedMap& indirect, const Settings& settings, bool accumulate);
+                     const ReconstructedMap& indirect, const PixelLists* lists, std::uint32_t frame_number,
+                     const Settings& settings, bool accumulate);
+  /// Clear surfaces over what is behind them, with direct light by traced shadow rays; all their pixels are put into
+  /// `lists`, unless it is null.
+  const Picture& run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
+                          const TracedLight& direct, const PixelLists* lists, const Settings& settings,
+                          bool accumulate);
   /// One of the views that are not of light, from what is in `view_map`.
   const Picture& show(const DeviceScene& scene, const GBuffer& g_buffer, const gl::Texture& view_map,
                       const Settings& settings, bool accumulate);
@@ -68,9 +76,16 @@ class ComposePass {
 
  private:
   struct Variant {
-    explicit Variant(const gl::ProgramPtr& p) : program(p), view(p, "view") {}
+    explicit Variant(const gl::ProgramPtr& p)
+        : program(p),
+          view(p, "view"),
+          unmatched_share(p, "unmatched_share"),
+          most_unmatched(p, "most_unmatched"),
+          frame_number(p, "frame_number") {}
     gl::ProgramPtr program;
     gl::Uniform<int> view;
+    gl::Uniform<float> unmatched_share;
+    gl::Uniform<std::uint32_t> most_unmatched, frame_number;
   };
   const Picture& draw(const gl::Defines& surfaces, const gl::Defines& background, const Settings& settings,
                       bool accumulate);

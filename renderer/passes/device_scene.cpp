@@ -17,6 +17,14 @@ constexpr std::size_t kKeptScenes = 8;
 
 constexpr std::uint64_t kTexelBytes = 16;
 
+// Whether any of its surface may be, see kSmoothAlpha in shaders/smooth_lobe.glsl: textures only make it smoother.
+bool may_be_smooth(const DeviceMaterial& material) {
+  constexpr float kSmoothRoughness = 0.25f;
+  const bool textured = material.metallic_roughness_texture.slot != 0;
+  return (textured || material.roughness < kSmoothRoughness) &&
+         (material.specular_factor > 0.0f || material.metallic > 0.0f);
+}
+
 void check_texels(std::uint64_t bytes, const char* what) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
@@ -128,6 +136,8 @@ void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multipl
     return instance.material >= 0 &&
            lightwell::is_lambert(scene.materials[static_cast<std::size_t>(instance.material)]);
   });
+  smooth_defines_.clear();
+  if (has_smooth_) smooth_defines_.emplace_back("SMOOTH_SURFACES 1");
   environment_defines_.clear();
   if (scene.environment.image) environment_defines_.emplace_back("HAS_ENVIRONMENT_IMAGE 1");
 }
@@ -173,7 +183,7 @@ void DeviceScene::upload_materials(const Scene& scene) {
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
   has_textures_ = has_all_textures_ = has_coverage_ = false;
-  has_clear_ = has_clear_walls_ = has_blend_ = false;
+  has_clear_ = has_clear_walls_ = has_blend_ = has_smooth_ = false;
   has_lobes_ = std::any_of(scene.materials.begin(), scene.materials.end(), lightwell::has_lobes);
   for (const DeviceMaterial& material : packed) {
     has_textures_ |= material.base_color_texture.slot != 0;
@@ -181,6 +191,7 @@ void DeviceScene::upload_materials(const Scene& scene) {
         (material.metallic_roughness_texture.slot | material.normal_texture.slot | material.emissive_texture.slot) != 0;
     has_coverage_ |= (material.flags & (kDeviceMaterialMask | kDeviceMaterialBlend)) != 0;
     has_blend_ |= (material.flags & kDeviceMaterialBlend) != 0;
+    has_smooth_ |= may_be_smooth(material);
     has_clear_ |= (material.flags & kDeviceMaterialClear) != 0;
     has_clear_walls_ |= (material.flags & kDeviceMaterialClearWall) != 0;
   }

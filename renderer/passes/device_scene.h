@@ -72,6 +72,8 @@ class DeviceScene {
   /// Alpha masks or blends.
   bool has_coverage() const { return has_coverage_; }
   /// Surfaces that light goes straight on through; the same without a volume behind them.
+  /// SMOOTH_SURFACES, where there are some: see shaders/smooth_lobe.glsl.
+  const gl::Defines& smooth_defines() const { return smooth_defines_; }
   bool has_clear() const { return has_clear_; }
   bool has_clear_walls() const { return has_clear_walls_; }
   /// Clear surfaces or alpha blends: shadows with a colour (TINTED_SHADOWS).
@@ -112,8 +114,8 @@ class DeviceScene {
   GLuint vertex_array_ = 0;
   Draws draws_[3];
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false, is_lambert_ = false;
-  bool has_clear_ = false, has_clear_walls_ = false, has_blend_ = false;
-  gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_;
+  bool has_clear_ = false, has_clear_walls_ = false, has_blend_ = false, has_smooth_ = false;
+  gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_, smooth_defines_;
   std::uint64_t triangles_ = 0;
 };
 

@@ -8,12 +8,8 @@
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
 #include "shaders/patch_samples.glsl"
+#include "shaders/sum_samples.glsl"
 
-layout(binding = UNIT_SAMPLE_STATES) uniform samplerBuffer states;       // weight of a ray; density
-layout(binding = UNIT_SAMPLE_LIGHT) uniform samplerBuffer light;         // two a slot: known, waiting; then of the lamps
-layout(binding = UNIT_SAMPLE_VISIBLE) uniform usamplerBuffer visible;    // a bit a shadow ray
-layout(binding = UNIT_NEXT_STATES) uniform samplerBuffer next_states;    // two a path that went on; first: reflectance
-layout(binding = UNIT_NEXT_LIGHT) uniform samplerBuffer next_light;      // two a path that went on; first: what came
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_map;           // rgb; a: frames in it
 layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance: first, second; of late frames
 layout(binding = UNIT_IMAGE_C) uniform usampler2D previous_guide;        // position, normal and roughness
@@ -26,11 +22,6 @@ layout(location = 2) out uvec4 out_guide;
 layout(binding = UNIT_G_MOTION) uniform sampler2D g_motion;  // metres since the frame before
 #endif
 
-uniform uint sample_count;
-uniform uint path_stride;
-uniform uint path_phase;
-uniform uint first_next;             // the place of the first path that went on
-uniform int lamps_sampled;           // 1: behind the rays' light is that of the lamps
 uniform mat4 previous_clip_from_world;
 uniform float kept_frames;           // that the history counts for at most
 uniform int has_history;
@@ -41,29 +32,6 @@ const float kMostRougher = 0.2;
 const float kGreatest = 1e15;
 const float kLateFrames = 6.0;
 const float kMostDeviations = 4.0;   // of the late frames' mean
-
-bool is_visible(uint slot) { return (texelFetch(visible, int(slot / 32u)).x >> (slot & 31u) & 1u) != 0u; }
-
-vec3 light_of_ray(uint slot) {
-  const vec4 known = texelFetch(light, int(2u * slot));
-  const vec4 waiting = texelFetch(light, int(2u * slot + 1u));
-  vec3 arriving = known.rgb + (is_visible(slot) ? waiting.rgb : vec3(0.0));
-  if (waiting.a > 0.5 && slot % path_stride == path_phase) {
-    const int next = int(2u * (first_next + slot / path_stride));
-    arriving += texelFetch(next_states, next).rgb * texelFetch(next_light, next).rgb;
-  }
-  return arriving * texelFetch(states, int(slot)).rgb;
-}
-
-vec3 light_of_samples(uint texel_index) {
-  const uint texels = uint(map_size_px.x * map_size_px.y);
-  vec3 sum = vec3(0.0);
-  for (uint ray = 0u; ray < rays_per_texel; ++ray) sum += light_of_ray(ray * texels + texel_index);
-  sum /= float(rays_per_texel);
-  if (lamps_sampled == 1 && is_visible(sample_count + texel_index))
-    sum += texelFetch(light, int(2u * sample_count + texel_index)).rgb;
-  return sum;
-}
 
 struct History {
   vec3 light;

@@ -1,50 +1,20 @@
 #include "renderer/passes/patch_samples.h"
+#include "renderer/passes/clear_samples.h"
 #include "renderer/passes/clear_shadows.h"
 
 #include <algorithm>
 
 #include "renderer/passes/bindings.glsl"
+#include "renderer/passes/sample_wave.h"
 
 namespace lightwell {
 
 namespace {
 
-constexpr GLbitfield kBetweenStages = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 constexpr std::uint32_t kNoPhase = ~0u;
 constexpr float kGreatestLight = 1e9f;  // nit; what the environment may have at most. More overflows the cells' sums
 constexpr std::uint32_t kSamplesPerWalker = 8;
 constexpr std::uint32_t kNoPathWord = ~0u;  // fills a ray that is none, for it compares with nothing, and names no cell
-
-gl::Defines light_defines(const LightTable& lights) {
-  gl::Defines defines;
-  if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
-  if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
-  if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
-  return defines;
-}
-
-// Rays and what they hit.
-struct Wave {
-  explicit Wave(gl::BufferUse use)
-      : rays("sample rays", 0, use),
-        shadow_rays("sample shadow rays", 0, use),
-        hits("sample hits", 0, use),
-        visible("visible lights", 0, use),
-        states("sample states", 0),
-        light("light of samples", 0) {}
-  void resize(std::uint64_t paths, std::uint64_t shadow_paths, std::uint64_t state_words) {
-    rays.reserve(paths * sizeof(Ray));
-    shadow_rays.reserve(shadow_paths * sizeof(Ray));
-    hits.reserve((paths + 2) * sizeof(Hit));  // read four words at a time
-    visible.reserve((shadow_paths + 31) / 32 * sizeof(std::uint32_t));
-    states.reserve(paths * state_words * sizeof(glm::vec4));
-    light.reserve((paths + shadow_paths) * sizeof(glm::vec4));
-    ray_texels.attach(rays);
-    hit_texels.attach(hits);
-  }
-  gl::Buffer rays, shadow_rays, hits, visible, states, light;
-  gl::BufferTexture ray_texels{"sample rays", GL_RGBA32F}, hit_texels{"sample hits", GL_RGBA32UI};
-};
 
 }  // namespace
 
@@ -52,59 +22,32 @@ struct Wave {
 // the walkers: paths that go on from frame to frame.
 struct PatchSamplesPass::Slots {
   explicit Slots(gl::BufferUse use)
-      : first(use), next(std::make_unique<Wave>(use)), later(std::make_unique<Wave>(use)) {}
-  Wave first;
-  std::unique_ptr<Wave> next, later;
+      : first(use), next(std::make_unique<SampleWave>(use)), later(std::make_unique<SampleWave>(use)) {}
+  SampleWave first;
+  std::unique_ptr<SampleWave> next, later;
   std::uint32_t walkers = 0;
 };
 
 // What rays have come to, and where some of their paths go on.
 struct PatchSamplesPass::Meeting {
   bool first;  // along the rays from the pixels
-  const Wave& wave;
+  const SampleWave& wave;
   const gl::Buffer& states;
   std::uint32_t paths;
-  const Wave& onward;
+  const SampleWave& onward;
   std::uint32_t stride, phase, first_onward, most_onward;
 };
 
-struct PatchSamplesPass::HitProgram {
-  explicit HitProgram(const gl::ProgramPtr& p)
-      : program(p),
-        grid(p),
-        lights(p),
-        cache(p),
-        path_count(p, "path_count"),
-        path_stride(p, "path_stride"),
-        path_phase(p, "path_phase"),
-        first_next(p, "first_next"),
-        most_next(p, "most_next"),
-        lamps_light_hits(p, "lamps_light_hits"),
-        cache_lights_hits(p, "cache_lights_hits") {}
-  gl::ProgramPtr program;
-  PatchGridUniforms grid;
-  LightTableUniforms lights;
-  RadianceCacheUniforms cache;
-  gl::Uniform<std::uint32_t> path_count, path_stride, path_phase, first_next, most_next;
-  gl::Uniform<int> lamps_light_hits, cache_lights_hits;
-};
-
 struct PatchSamplesPass::Programs {
-  struct SurfaceProgram {
-    explicit SurfaceProgram(const gl::ProgramPtr& p)
-        : program(p), grid(p), lights(p), sample_count(p, "sample_count") {}
-    gl::ProgramPtr program;
-    PatchGridUniforms grid;
-    LightTableUniforms lights;
-    gl::Uniform<std::uint32_t> sample_count;
-  };
   Programs(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
       : surfaces([&shaders](const gl::Defines& d) { return shaders.compute("passes/surface_samples.comp", d); }),
         hits([&shaders](const gl::Defines& d) { return shaders.compute("passes/sample_hits.comp", d); }),
-        clear_shadows(shaders, buffers) {}
-  gl::Variants<SurfaceProgram> surfaces;
-  gl::Variants<HitProgram> hits;
+        clear_shadows(shaders, buffers),
+        clear_samples(shaders, buffers) {}
+  gl::Variants<SurfaceSamplesProgram> surfaces;
+  gl::Variants<SampleHitsProgram> hits;
   ClearShadowsPass clear_shadows;
+  ClearSamplesPass clear_samples;
 };
 
 PatchSamplesPass::PatchSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
@@ -118,7 +61,7 @@ void PatchSamplesPass::resize(const PatchGrid& grid) {
   s.first.resize(paths, paths + grid.texels(), 1);
   if (s.walkers != grid.samples() / kSamplesPerWalker) {
     s.walkers = grid.samples() / kSamplesPerWalker;
-    for (Wave* wave : {s.next.get(), s.later.get()}) {
+    for (SampleWave* wave : {s.next.get(), s.later.get()}) {
       wave->resize(paths + s.walkers, paths + s.walkers, 2);
       wave->rays.clear(kNoPathWord);
       wave->states.clear(kNoPathWord);
@@ -143,6 +86,7 @@ const PatchSamples& PatchSamplesPass::run(FrameContext& frame, const GBuffer& g_
   sample_surfaces(frame, g_buffer, lights, grid);
   frame.timer.mark("directions");
   frame.tracer.closest_hit(s.first.rays, grid.samples(), s.first.hits);
+  programs_->clear_samples.run(frame, s.first, grid.samples(), grid.frame_number);
   frame.rays += grid.samples();
   frame.timer.mark("trace");
   meet_hits(frame, lights, cache, grid,
@@ -161,7 +105,7 @@ const PatchSamples& PatchSamplesPass::run(FrameContext& frame, const GBuffer& g_
 
 void PatchSamplesPass::sample_surfaces(const FrameContext& frame, const GBuffer& g_buffer, const LightTable& lights,
                                        const PatchGrid& grid) {
-  gl::Defines defines = frame.scene.brdf_defines();
+  gl::Defines defines = gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines());
   if (samples_.lamps_sampled) {
     defines = gl::joined(gl::joined(defines, frame.scene.texture_defines()), frame.scene.environment_defines());
     defines.emplace_back("HAS_SIZED_LIGHTS 1");
@@ -173,21 +117,22 @@ void PatchSamplesPass::sample_surfaces(const FrameContext& frame, const GBuffer&
   variant.lights.set(lights.counts());
   variant.sample_count = grid.samples();
   g_buffer.bind();
-  const Wave& wave = slots_->first;
+  const SampleWave& wave = slots_->first;
   wave.rays.bind_storage(BINDING_SAMPLE_RAYS);
   wave.shadow_rays.bind_storage(BINDING_SAMPLE_SHADOW_RAYS);
   wave.states.bind_storage(BINDING_SAMPLE_STATES);
   wave.light.bind_storage(BINDING_SAMPLE_LIGHT);
   variant.program->dispatch(grid.samples());
-  glMemoryBarrier(kBetweenStages);
+  glMemoryBarrier(kBetweenSampleStages);
 }
 
 void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& lights, const RadianceCache& cache,
                                  const PatchGrid& grid, const Meeting& meeting) {
   gl::Defines defines = gl::joined(gl::joined(frame.scene.texture_defines(), frame.scene.brdf_defines()),
-                                   gl::joined(frame.scene.environment_defines(), light_defines(lights)));
+                                   gl::joined(frame.scene.environment_defines(), light_kinds(lights)));
+  defines = gl::joined(defines, ClearSamplesPass::defines(frame.scene));
   if (meeting.first) defines.emplace_back("FIRST_HITS 1");
-  HitProgram& variant = programs_->hits.with(defines);
+  SampleHitsProgram& variant = programs_->hits.with(defines);
   variant.grid.set(grid);
   variant.lights.set(lights.counts());
   variant.path_count = meeting.paths;
@@ -207,17 +152,18 @@ void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& li
   meeting.onward.rays.bind_storage(BINDING_SAMPLE_RAYS);
   meeting.onward.states.bind_storage(BINDING_SAMPLE_STATES);
   variant.program->dispatch(meeting.paths);
-  glMemoryBarrier(kBetweenStages);
+  glMemoryBarrier(kBetweenSampleStages);
 }
 
 // What came along the rays from hits fills the cache, and lights the hits whose cells are new.
 void PatchSamplesPass::follow_paths(FrameContext& frame, const LightTable& lights, RadianceCache& cache,
                                     const PatchGrid& grid) {
   Slots& s = *slots_;
-  Wave& wave = *s.next;
+  SampleWave& wave = *s.next;
   const std::uint32_t paths =
       s.walkers + (grid.samples() - samples_.path_phase + samples_.path_stride - 1) / samples_.path_stride;
   frame.tracer.closest_hit(wave.rays, paths, wave.hits);
+  programs_->clear_samples.run(frame, wave, paths, grid.frame_number);
   frame.timer.mark("trace");
   // Where the cache carries no bounces, nobody asks what the walkers find.
   const std::uint32_t walkers = frame.settings.bounces > 2 ? s.walkers : 0;

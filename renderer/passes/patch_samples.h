@@ -40,7 +40,6 @@ class PatchSamplesPass {
  private:
   struct Programs;
   struct Slots;
-  struct HitProgram;
   void sample_surfaces(const FrameContext& frame, const GBuffer& g_buffer, const LightTable& lights,
                        const PatchGrid& grid);
   struct Meeting;

@@ -1,6 +1,7 @@
 // What leaves the hits of the occlusion map: their emission, a sample of the lights that waits for its shadow ray, and light
 // that has bounced before, from the radiance cache. Some hits' paths go on by one more ray, sampled by the cosine: what
 // comes along them fills the cache. FIRST_HITS: along the rays from pixels; else along those from hits.
+// CLEAR_SURFACES: rays may have come through some, see clear_samples.comp.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -24,6 +25,9 @@ layout(local_size_x = 64) in;
 #define CELL_INSERTION
 #include "shaders/radiance_cache.glsl"
 
+#ifdef CLEAR_SURFACES
+layout(binding = UNIT_CLEARED) uniform samplerBuffer tints;
+#endif
 layout(binding = UNIT_SAMPLE_STATES) uniform samplerBuffer states_in;  // a: density of the ray
 // All is written once, at the end, and by four words: on a software device every store is a loop over the lanes.
 layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { vec4 shadow_rays[]; };  // 2 a ray
@@ -43,6 +47,10 @@ uniform int cache_lights_hits; // 0: not in the last bounces
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 const float kSideOverDistance = 0.5;   // of a cell over the length of the ray that came to it
+
+// What a smooth surface mirrors of a light into other surfaces, rays find as rare bright spots: at hits it is as rough as this
+// at least (Kaplanyan and Dachsbacher 2013, "Path space regularization for holistic and robust light transport").
+const float kLeastAlphaAtHits = 0.25;
 
 struct PathVertex {
   uint slot;
@@ -178,9 +186,13 @@ Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
   Step next = nothing();
   HitPoint point = hit_point(at.ray, hit, hit.t * kFootprintPerMetre);
   const bool lit = (point.material_flags & kMaterialUnlit) == 0u;
+#ifdef CLEAR_SURFACES
+  if ((point.material_flags & kMaterialClear) != 0u) point.brdf.transmission_color = vec3(0.0);
+#endif
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 reflected_share = reflectance(at, point);
   point.brdf = brdf_in_frame(point.brdf, frame);
+  point.brdf.alpha = max(point.brdf.alpha, kLeastAlphaAtHits);
   sample_lights(next, at, hit, point, frame);
   const Cells cells = cells_at(at, hit, point, goes_on && lit);
   const CellValue bounced = light_of(cells);
@@ -228,5 +240,10 @@ void main() {
     next = nothing();
     next.known = at.ray.t_max > 0.0 ? sky : vec3(0.0);
   }
+#ifdef CLEAR_SURFACES
+  const vec3 tint = texelFetch(tints, int(at.slot)).rgb;
+  next.known *= tint;
+  next.waiting *= tint;
+#endif
   write(at, next);
 }

@@ -1,6 +1,7 @@
 // From one real pixel of each patch: rays sampled by the BRDF, each with what its light counts for (f cos(theta) / pdf over
 // the directional albedo), and a sample of the lights that have a size, weighted against those rays (Veach 1997).
 // HAS_SIZED_LIGHTS: there are such lights in the table.
+// REFLECTIONS: of smooth surfaces alone; no other strategy looks for the lights that these rays find.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -8,14 +9,18 @@ layout(local_size_x = 64) in;
 #include "shaders/sampling.glsl"
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
-#include "shaders/g_buffer.glsl"
-#include "shaders/ray.glsl"
-#include "shaders/patch_samples.glsl"
 #ifdef HAS_SIZED_LIGHTS
 #include "shaders/scene_data.glsl"
 #ifdef HAS_TEXTURES
 #include "shaders/textures.glsl"
 #endif
+#include "shaders/surface.glsl"
+#endif
+#include "shaders/g_buffer.glsl"
+#include "shaders/ray.glsl"
+#include "shaders/patch_samples.glsl"
+#include "shaders/smooth_lobe.glsl"
+#ifdef HAS_SIZED_LIGHTS
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
 #include "shaders/light_sampling.glsl"
@@ -29,6 +34,8 @@ layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays
 layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
 
 uniform uint sample_count;  // texels * rays_per_texel
+
+const float kNoOtherStrategy = 1e30;  // as a density: it outweighs any other
 
 struct SurfaceFrame {
   GBufferPoint point;
@@ -59,7 +66,12 @@ void sample_direction(uint slot, uint ray, uint texel_seed, SurfaceFrame at) {
   const vec3 value = brdf_times_cosine(at.brdf, at.out_direction, in_direction) / at.albedo;
   rays[2u * slot] = vec4(lifted_origin(at, in_direction.z < 0.0), 0.0);
   rays[2u * slot + 1u] = vec4(in_ws, active_ray ? 1e30 : -1.0);
-  states[slot] = vec4(active_ray ? value / max(pdf, 1e-20) : vec3(0.0), pdf);
+#ifdef REFLECTIONS
+  const float density = kNoOtherStrategy;
+#else
+  const float density = pdf;
+#endif
+  states[slot] = vec4(active_ray ? value / max(pdf, 1e-20) : vec3(0.0), density);
 }
 
 #ifdef HAS_SIZED_LIGHTS
@@ -94,6 +106,11 @@ void main() {
   const ivec2 texel = ivec2(texel_index % uint(map_size_px.x), texel_index / uint(map_size_px.x));
   SurfaceFrame at;
   at.point = g_buffer_point(sampled_pixel(texel));
+#ifdef REFLECTIONS
+  at.point.brdf = brdf_of_reflections(at.point.brdf);
+#else
+  at.point.brdf = brdf_of_map(at.point.brdf);
+#endif
   at.frame = frame_around(at.point.normal_ws);
   at.out_direction = at.point.to_camera_ws * at.frame;
   at.brdf = brdf_in_frame(at.point.brdf, at.frame);

@@ -1,5 +1,6 @@
 // The indirect map of `realtime`: a texel stands for a patch of the picture, and in every frame another real pixel of the
 // patch stands for the texel. Ray j of texel i lies in slot j * texels + i. Needs sampling, camera.
+// PIXEL_LIST: a row of pixels in place of the map.
 
 uniform ivec2 map_size_px;
 uniform vec2 pixels_per_texel;
@@ -7,6 +8,17 @@ uniform uint rays_per_texel;
 uniform uint frame_number;
 uniform uint seed;
 
+#ifdef PIXEL_LIST
+layout(binding = UNIT_PIXEL_LIST) uniform usamplerBuffer pixel_list;  // y << 16 | x
+
+// Not by the place in the list, for that is another in every run.
+uint texel_seed(ivec2 texel) { return hash(texelFetch(pixel_list, texel.x).x ^ hash(seed ^ 0x3c6ef372u)); }
+
+ivec2 sampled_pixel(ivec2 texel) {
+  const uint word = texelFetch(pixel_list, texel.x).x;
+  return ivec2(word & 0xffffu, word >> 16);
+}
+#else
 uint texel_seed(ivec2 texel) { return hash(uvec3(texel, seed)); }
 
 // The points of a frame lie as the R2 sequence (Roberts 2018), from a start of each texel's own.
@@ -16,6 +28,7 @@ ivec2 sampled_pixel(ivec2 texel) {
   const vec2 within = vec2(unit_interval(point.x), unit_interval(point.y));
   return min(ivec2((vec2(texel) + within) * pixels_per_texel), camera.size_px.xy - 1);
 }
+#endif
 
 uint sample_number(uint ray) { return frame_number * rays_per_texel + ray; }
 
