@@ -5,6 +5,7 @@
 #include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
+#include "tests/unit/rich_gltf.h"
 
 namespace lightwell::test {
 namespace {
@@ -157,6 +158,16 @@ void ask_for_too_much(Answers& answers) {
   answers["sessions"] = asked.ask("POST", "/v1/sessions", R"({"scene":"cornell"})");
 }
 
+void ask_for_large_textures(Answers& answers) {
+  ServeOptions options = test_options();
+  options.limits.max_texture_bytes = 3;  // less than a pixel
+  Asked asked(options);
+  asked.until_ready();
+  const ByteVector glb = rich_gltf().glb();
+  const std::string bytes(reinterpret_cast<const char*>(glb.data()), glb.size());
+  answers["textures"] = asked.ask("PUT", "/v1/scenes/textured", bytes, kGlb);
+}
+
 void ask_too_often(Answers& answers) {
   ServeOptions options = test_options();
   options.access.requests_per_second = 1e-3;
@@ -237,7 +248,7 @@ std::map<std::string, json> documented() {
 TEST(Refusals, AreThoseOfTheDocument) {
   Answers answers;
   for (const auto& ask_for : {ask_what_is_malformed, ask_what_means_nothing, ask_for_sequences, ask_for_too_much,
-                              ask_too_often, ask_without_leave, ask_at_the_wrong_time})
+                              ask_for_large_textures, ask_too_often, ask_without_leave, ask_at_the_wrong_time})
     ask_for(answers);
   const auto examples = documented();
   for (const auto& [name, example] : examples) {
