@@ -79,7 +79,8 @@ std::string_view name_of(LightStrategy strategy);
 std::span<const ViewKind> all_view_kinds();
 
 /// How a picture is made. Ranges are checked by `check_settings`. `reference` makes one path per pixel and frame and
-/// knows method, bounces, light_strategy, seed and what is displayed; its views of surfaces are those of `thesis`.
+/// knows method, bounces, light_strategy, photon_guides, seed and what is displayed; its views of surfaces are those of
+/// `thesis`.
 struct Settings {
   Method method = Method::kThesis;
   int samples = 32;         // directions per pixel of the indirect map, 1..4096; `realtime` spreads them over 16 frames
@@ -104,6 +105,7 @@ struct Settings {
   bool denoise = false;                 // edge-stopping filter over the indirect map (not in the thesis)
   bool multiple_scattering = false;     // light between microfacets is kept: rough surfaces lose no energy
   LightStrategy light_strategy = LightStrategy::kBoth;
+  bool photon_guides = true;           // of `reference`: photons tell paths where mirrors throw light from
   bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
 };
 

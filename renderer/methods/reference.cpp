@@ -9,7 +9,7 @@ const Picture& ReferenceMethod::render(FrameContext& frame, const Scene& scene) 
   lights_.bind();
   frame.timer.mark("lights");
   path_tracer_.resize(frame.size_px);
-  return path_tracer_.run(frame, lights_);
+  return path_tracer_.run(frame, scene, lights_);
 }
 
 }  // namespace lightwell

@@ -16,6 +16,12 @@
 #define BINDING_PATH_PENDING 4
 #define BINDING_PATH_RADIANCE 5
 
+#define BINDING_PHOTON_RAYS 0
+#define BINDING_PHOTON_FLUXES 1
+#define BINDING_PHOTON_ORIGINS 2
+#define BINDING_GUIDE_CELLS 3
+#define BINDING_GUIDE_FLUXES 4
+
 #define BINDING_SAMPLE_RAYS 0
 #define BINDING_SAMPLE_SHADOW_RAYS 1
 #define BINDING_SAMPLE_STATES 2
@@ -115,6 +121,11 @@
 #define UNIT_CLEAR_LAYERS 53
 #define UNIT_PIXEL_LIST 54
 #define UNIT_REFLECTIONS_BEFORE 55
+#define UNIT_PHOTON_TARGETS 56
+#define UNIT_PHOTON_FLUXES 57
+#define UNIT_PHOTON_ORIGINS 58
+#define UNIT_GUIDE_CELLS 59
+#define UNIT_GUIDE_FLUXES 60
 
 #define TEXTURE_CLASSES 4
 #define BRDF_TABLE_COLUMNS 64
@@ -125,3 +136,8 @@
 
 // Of clear surfaces one behind the other, so many let light through; the next is as if opaque.
 #define MOST_CLEAR_SURFACES 8
+
+// Photon guides: places in a cell; cells, a power of two; steps of a cell's flux.
+#define GUIDES_PER_CELL 4
+#define GUIDE_CELLS 32768
+#define GUIDE_FLUX_STEPS 1024.0

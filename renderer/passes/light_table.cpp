@@ -163,6 +163,7 @@ void LightTable::upload(const Pose& pose) {
     for (const Emitter& emitter : instance.emitters) powers.push_back(emitter.power);
   powers.push_back(std::accumulate(cells_.weights.begin(), cells_.weights.end(), 0.0) * scene_disk_m2);
   std::vector<AliasEntry> choices = make_alias_table(powers);
+  power_ = std::accumulate(powers.begin(), powers.end(), 0.0);
 
   std::vector<DeviceLightRecord> records;
   for (const PlacedLight& light : pose.lights) records.push_back(record_of(light));

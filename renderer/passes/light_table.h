@@ -41,6 +41,9 @@ class LightTable {
   bool has_punctual() const { return counts_.punctual > 0; }
   bool has_emitters() const { return has_emitters_; }
   bool has_sized() const { return counts_.sized_share > 0.0f; }
+  /// Of all lights: what leaves them, or of those infinitely far what meets the scene; flux by luminance, lumens over a
+  /// constant.
+  double power() const { return power_; }
   bool has_environment() const { return counts_.environment_probability > 0.0f; }
 
  private:
@@ -77,6 +80,7 @@ class LightTable {
   std::optional<EnvironmentKey> environment_key_;
   EnvironmentCells cells_;
   LightCounts counts_;
+  double power_ = 0.0;
   bool has_emitters_ = false;
   std::size_t uploaded_instances_ = 0;
   gl::Buffer lights_, choices_, instance_lights_;

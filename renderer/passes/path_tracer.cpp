@@ -80,7 +80,11 @@ struct Carried {
 // The programs for one kind of scene.
 struct PathTracerPass::SurfaceVariant : PathProgram {
   explicit SurfaceVariant(const gl::ProgramPtr& p)
-      : PathProgram(p), lights(p), most_bounces(p, "most_bounces"), strategies(p, "strategies") {}
+      : PathProgram(p),
+        lights(p),
+        most_bounces(p, "most_bounces"),
+        strategies(p, "strategies"),
+        guide_cell_m(p, "guide_cell_m") {}
 
   void set(const FrameContext& frame, const LightTable& table, std::uint32_t first) const {
     uniforms.set(frame, first);
@@ -94,6 +98,7 @@ struct PathTracerPass::SurfaceVariant : PathProgram {
   LightTableUniforms lights;
   gl::Uniform<std::uint32_t> most_bounces;
   gl::Uniform<glm::vec2> strategies;
+  gl::Uniform<float> guide_cell_m;
 };
 
 struct PathTracerPass::Programs {
@@ -133,6 +138,7 @@ struct PathTracerPass::Slots {
 PathTracerPass::PathTracerPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : programs_(std::make_unique<Programs>(shaders)),
       clear_shadows_(shaders, buffers),
+      guides_(shaders, buffers),
       most_paths_(buffers == gl::BufferUse::kHostVisible ? kPathsOnHost : kPathsOnDevice) {
   slots_ = std::make_unique<Slots>(buffers, most_paths_);
 }
@@ -158,7 +164,8 @@ gl::Defines PathTracerPass::defines_for(const DeviceScene& scene, const LightTab
   return defines;
 }
 
-const Picture& PathTracerPass::run(FrameContext& frame, const LightTable& lights) {
+const Picture& PathTracerPass::run(FrameContext& frame, const Scene& scene, const LightTable& lights) {
+  guides_.run(frame, scene, lights, defines_for(frame.scene, lights));
   if (frame.frame_number == 0) picture_.accumulated = 0;
   const auto width = static_cast<std::uint32_t>(frame.size_px.x);
   const int rows_per_wave = std::max(1, static_cast<int>(most_paths_ / width));
@@ -173,9 +180,11 @@ const Picture& PathTracerPass::run(FrameContext& frame, const LightTable& lights
 
 void PathTracerPass::trace_wave(FrameContext& frame, const LightTable& lights, const Wave& wave) {
   const gl::Defines defines = defines_for(frame.scene, lights);
-  const SurfaceVariant& vertex = programs_->vertex.with(defines);
+  const gl::Defines guides = guides_.has_guides() ? gl::Defines{"GUIDED 1"} : gl::Defines{};
+  const SurfaceVariant& vertex = programs_->vertex.with(gl::joined(defines, guides));
   const SurfaceVariant& end = programs_->end.with(defines);
   vertex.set(frame, lights, wave.first_pixel);
+  vertex.guide_cell_m = guides_.cell_m();
   end.set(frame, lights, wave.first_pixel);
   Slots& s = *slots_;
   start(frame, wave);
@@ -218,6 +227,7 @@ void PathTracerPass::meet_surfaces(const SurfaceVariant& vertex, std::uint32_t p
   s.shadow_rays.bind_storage(BINDING_PATH_SHADOW_RAYS);
   s.radiance_texels.bind(UNIT_PATH_RADIANCE);
   s.radiance.bind_storage(BINDING_PATH_RADIANCE);
+  if (guides_.has_guides()) guides_.bind();
   vertex.uniforms.path_count = paths;
   vertex.program->dispatch(paths);
   glMemoryBarrier(kBetweenStages);

@@ -8,6 +8,7 @@
 #include "renderer/passes/clear_shadows.h"
 #include "renderer/passes/compose.h"
 #include "renderer/passes/light_table.h"
+#include "renderer/passes/photon_guides.h"
 
 namespace lightwell {
 
@@ -21,7 +22,7 @@ class PathTracerPass {
 
   /// Adds one path per pixel to the picture, or begins it anew if `frame.frame_number` is 0. The number is the sample's
   /// index in each pixel's sequences.
-  const Picture& run(FrameContext& frame, const LightTable& lights);
+  const Picture& run(FrameContext& frame, const Scene& scene, const LightTable& lights);
 
  private:
   struct Wave {  // rows of the picture
@@ -43,6 +44,7 @@ class PathTracerPass {
   std::unique_ptr<Programs> programs_;
   std::unique_ptr<Slots> slots_;
   ClearShadowsPass clear_shadows_;
+  PhotonGuidesPass guides_;
   std::uint32_t most_paths_;  // in a wave
   Picture picture_;
   gl::Framebuffer framebuffer_;

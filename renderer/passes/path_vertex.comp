@@ -1,6 +1,6 @@
 // A path meets a surface. Its light is added, weighted against what the last surface's sample of the lights could have
 // found (Veach 1997, power heuristic); a light is sampled, to be added if its shadow ray gets through; and the path goes
-// on along a direction sampled by the BRDF, or ends.
+// on along a direction sampled by the BRDF or by photon guides (GUIDED), or ends.
 // CLEAR_WALLS: there are thin surfaces that light goes straight on through. Shadow rays pass them (clear_shadows.comp), and
 // so do paths, as if they met nothing: to pass one is no bounce.
 layout(local_size_x = 64) in;
@@ -27,6 +27,11 @@ layout(local_size_x = 64) in;
 #include "shaders/light_strategy.glsl"
 #include "shaders/fetch_hit.glsl"
 #include "shaders/path.glsl"
+#ifdef GUIDED
+#include "shaders/guide_cells.glsl"
+#include "shaders/guides.glsl"
+#endif
+#include "shaders/direction_sampling.glsl"
 
 layout(binding = UNIT_HIT_LIST) uniform usamplerBuffer hit_list;       // which paths met a surface
 layout(binding = UNIT_PATH_STATES) uniform samplerBuffer states_in;    // throughput; density of the ray's direction
@@ -98,15 +103,16 @@ bool is_straight_on(HitPoint point, vec3 in_direction) {
 #endif
 }
 
-void sample_lights(inout Step next, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_direction, uint pixel_seed,
-                   float u_choice) {
+void sample_lights(inout Step next, Path path, Hit hit, HitPoint point, DirectionSampling sampling, mat3 frame,
+                   vec3 out_direction, uint pixel_seed, float u_choice) {
 #if defined(LIGHTS_PUNCTUAL) || defined(LIGHTS_TRIANGLES) || defined(LIGHTS_ENVIRONMENT)
   const uint light_seed = decision_seed(pixel_seed, path.depth, kDecisionLight);
   const vec2 u = sobol_2d(sample_number, light_seed);
   const float u_cell = unit_interval(hash(light_seed + sample_number * 0x85ebca6bu));
   const TableSample at = sample_light(point.position_ws, path.depth >= most_bounces, u, u_choice, u_cell);
   const vec3 in_direction = at.to_light_ws * frame;
-  const float weight = weight_of_sampled_light(at.pdf, brdf_pdf(point.brdf, out_direction, in_direction));
+  const float weight =
+      weight_of_sampled_light(at.pdf, direction_pdf(sampling, point, out_direction, in_direction, at.to_light_ws));
   const vec3 light = path.throughput * reflected(point, out_direction, in_direction, at.to_light_ws) * at.value * weight;
   if (greatest(light) <= 0.0 || is_straight_on(point, in_direction)) return;
   const Ray ray = shadow_ray(lifted(point.position_ws, point.geometric_normal_ws, hit.t, at.to_light_ws),
@@ -119,12 +125,12 @@ void sample_lights(inout Step next, Path path, Hit hit, HitPoint point, mat3 fra
 }
 
 // The next ray and what it will carry; ends the path where there is none.
-void go_on(inout Step next, Path path, Hit hit, HitPoint point, mat3 frame, vec3 out_direction, uint pixel_seed,
-           float u_lobe) {
+void go_on(inout Step next, Path path, Hit hit, HitPoint point, DirectionSampling sampling, mat3 frame,
+           vec3 out_direction, uint pixel_seed, float u_lobe) {
   const vec2 u = sobol_2d(sample_number, decision_seed(pixel_seed, path.depth, kDecisionDirection));
-  const vec3 in_direction = sample_brdf(point.brdf, out_direction, u, u_lobe);
-  next.pdf = brdf_pdf(point.brdf, out_direction, in_direction);
+  const vec3 in_direction = sample_direction(sampling, point, frame, out_direction, u, u_lobe);
   const vec3 in_ws = normalize(frame * in_direction);
+  next.pdf = direction_pdf(sampling, point, out_direction, in_direction, in_ws);
   next.throughput = path.throughput * reflected(point, out_direction, in_direction, in_ws) / max(next.pdf, 1e-20);
   bool alive = next.pdf > 0.0 && path.depth < min(most_bounces, kGreatestDepth) && greatest(next.throughput) > 0.0;
   if (path.depth >= kRouletteAfter) {
@@ -170,11 +176,12 @@ Step meet_surface(Path path, Hit hit) {
   const vec3 out_direction = -path.ray.direction_ws * frame;
   point.brdf = brdf_in_frame(point.brdf, frame);
   const vec2 u_kinds = sobol_2d(sample_number, decision_seed(seed_of_pixel, path.depth, kDecisionKinds));
-  sample_lights(next, path, hit, point, frame, out_direction, seed_of_pixel, u_kinds.x);
+  const DirectionSampling sampling = direction_sampling(point, out_direction);
+  sample_lights(next, path, hit, point, sampling, frame, out_direction, seed_of_pixel, u_kinds.x);
 #ifdef CLEAR_WALLS
   if (passes_wall(next, path, hit, point, out_direction, u_kinds.y)) return next;
 #endif
-  go_on(next, path, hit, point, frame, out_direction, seed_of_pixel, u_kinds.y);
+  go_on(next, path, hit, point, sampling, frame, out_direction, seed_of_pixel, u_kinds.y);
   return next;
 }
 

@@ -173,6 +173,9 @@ float specular_probability(Brdf brdf, float cos_out) {
   return clamp(specular / (specular + diffuse), 0.1, 0.9);
 }
 
+// Share of samples given to the diffuse lobe.
+float diffuse_probability(Brdf brdf, vec3 out_direction) { return 1.0 - specular_probability(brdf, out_direction.z); }
+
 // Density over solid angle with which sample_brdf gives `in_direction`; directions in the frame of the normal.
 float brdf_pdf(Brdf brdf, vec3 out_direction, vec3 in_direction) {
   if (out_direction.z <= 0.0 || in_direction.z <= 0.0) return 0.0;

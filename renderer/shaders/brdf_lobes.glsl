@@ -115,6 +115,8 @@ vec4 lobe_probabilities(Brdf brdf, vec3 out_direction) {
   return share / dot(share, vec4(1.0));
 }
 
+float diffuse_probability(Brdf brdf, vec3 out_direction) { return lobe_probabilities(brdf, out_direction).y; }
+
 // Density over solid angle with which sample_brdf gives `in_direction`; directions in the frame of the normal.
 float brdf_pdf(Brdf brdf, vec3 out_direction, vec3 in_direction) {
   if (out_direction.z <= 0.0 || in_direction.z == 0.0) return 0.0;

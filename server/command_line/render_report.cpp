@@ -49,6 +49,7 @@ std::map<std::string, std::string> exr_metadata(const RenderArguments& arguments
           {"lightwell:denoise", settings.denoise ? "true" : "false"},
           {"lightwell:multiple_scattering", settings.multiple_scattering ? "true" : "false"},
           {"lightwell:temporal_antialiasing", settings.temporal_antialiasing ? "true" : "false"},
+          {"lightwell:photon_guides", settings.photon_guides ? "true" : "false"},
           {"lightwell:seed", std::to_string(settings.seed)},
           {"lightwell:accumulated", std::to_string(frame.accumulated)}};
 }

@@ -66,6 +66,8 @@ void add_transport_options(CLI::App& app, Settings& settings) {
   add_named(app, "--light-strategy", settings.light_strategy,
             {LightStrategy::kBoth, LightStrategy::kLights, LightStrategy::kRays}, light_strategy_from_name,
             "How reference finds lights that have a size: by samples of them, by rays that hit them, or by both");
+  app.add_flag("--photon-guides,!--no-photon-guides", settings.photon_guides,
+               "reference: photons tell paths where mirrors throw light from; without them caustics are noisier");
 }
 
 void add_display_options(CLI::App& app, Settings& settings) {
