@@ -73,6 +73,7 @@ struct SettingsSpec {
   std::optional<bool> denoise;
   std::optional<bool> multiple_scattering;
   std::optional<bool> temporal_antialiasing;
+  std::optional<std::int32_t> target_fps;  // 0 or more
 
   bool operator==(const SettingsSpec&) const = default;
 };

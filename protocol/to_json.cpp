@@ -216,6 +216,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "denoise", settings.denoise);
   give(object, "multiple_scattering", settings.multiple_scattering);
   give(object, "temporal_antialiasing", settings.temporal_antialiasing);
+  give(object, "target_fps", settings.target_fps);
   return object;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <optional>
 
 #include "renderer/check.h"
@@ -94,6 +95,16 @@ std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
     all.push_back(std::move(coverage));
   }
   return all;
+}
+
+// Of the stages whose time grows with the rays of the indirect map.
+double ms_of_rays(const std::vector<StageTime>& stages) {
+  constexpr std::string_view kOfRays[] = {"directions",      "trace",          "light of hits",
+                                          "shadows of hits", "radiance cache", "reconstruction"};
+  double ms = 0.0;
+  for (const StageTime& stage : stages)
+    if (std::find(std::begin(kOfRays), std::end(kOfRays), stage.name) != std::end(kOfRays)) ms += stage.ms;
+  return ms;
 }
 
 // A low-discrepancy point about the pixel's middle, for anti-aliasing over accumulated frames: Roberts 2018 (R2).
@@ -208,6 +219,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     Settings settings = request.settings;
     // A view of surfaces by `thesis` in another method's place: its bounces, which may be without limit, do not show.
     if (method != settings.method) settings.bounces = std::min(settings.bounces, 1);
+    if (method == Method::kRealtime) settings = view.realtime().budget().within(settings);
     // The paths of `reference` have a jitter of their own.
     const bool over_time = method == Method::kRealtime && settings.temporal_antialiasing && view.accumulated == 0;
     const glm::vec2 jitter_px = method == Method::kReference
@@ -250,6 +262,8 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
   }
   for (const auto& stage : state_->timer.end_frame()) frame.stages.push_back({stage.name, stage.ms});
   frame.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (method_of(request.settings) == Method::kRealtime)
+    view.realtime().budget().note(frame.total_ms, ms_of_rays(frame.stages));
   return frame;
 }
 

@@ -105,7 +105,11 @@ struct Settings {
   bool denoise = false;                 // edge-stopping filter over the indirect map (not in the thesis)
   bool multiple_scattering = false;     // light between microfacets is kept: rough surfaces lose no energy
   LightStrategy light_strategy = LightStrategy::kBoth;
-  bool photon_guides = true;           // of `reference`: photons tell paths where mirrors throw light from
+  bool photon_guides = true;  // of `reference`: photons tell paths where mirrors throw light from
+  /// Of `realtime`, frames a second, 0..240: samples and indirect_size are what the picture has at most, and fewer
+  /// where frames would take longer. What is measured decides, so that pictures differ from run to run; 0: as they are
+  /// set.
+  int target_fps = 0;
   bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
 };
 

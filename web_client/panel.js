@@ -5,6 +5,7 @@ import { scene_title } from "./session_model.js";
 import { short_number } from "./stats.js";
 
 const kSamples = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
+const kFrameRates = [0, 5, 10, 15, 20, 24, 30, 60, 120, 240];
 const kIndirectSizes = [32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 const kShadowSizes = [128, 256, 512, 1024, 2048, 4096];
 const kMethodNames = { thesis: "Thesis", realtime: "Realtime", reference: "Reference" };
@@ -156,9 +157,13 @@ export class Panel {
     const temporal_antialiasing = this.setting("temporal_antialiasing", make_toggle, {
       label: "Temporal anti-aliasing", hint: "With realtime: edges smooth over the frames, along with what moves",
     });
+    const target_fps = this.setting("target_fps", make_slider, {
+      label: "Frame rate", values: kFrameRates, format: (value) => (value > 0 ? `at least ${value}/s` : "As it comes"),
+      hint: "With realtime: samples and the indirect map become fewer and smaller where frames would take longer",
+    });
     return [
       method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row,
-      temporal_antialiasing.row,
+      temporal_antialiasing.row, target_fps.row,
     ];
   }
 

@@ -3,6 +3,7 @@
 // frames.
 #pragma once
 
+#include "renderer/methods/frame_budget.h"
 #include "renderer/methods/frame_context.h"
 #include "renderer/methods/realtime_front.h"
 #include "renderer/passes/compose.h"
@@ -26,6 +27,9 @@ class RealtimeMethod {
   /// `buffers`: where rays and hits live; host-visible for a native tracer.
   RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
 
+  /// What Settings::target_fps goes by: to be asked before a frame, and told after it.
+  FrameBudget& budget() { return budget_; }
+
   /// The number of the next frame: how its picture is to be shifted.
   std::uint32_t frame_number() const { return frame_number_; }
 
@@ -43,6 +47,7 @@ class RealtimeMethod {
                            const glm::mat4& previous_clip_from_world, bool unchanged);
   PatchGrid grid_of(const FrameContext& frame) const;
 
+  FrameBudget budget_;
   GBufferPass g_buffer_pass_;
   LightTable lights_;
   PunctualLightPass punctual_light_pass_;

@@ -50,6 +50,7 @@ std::map<std::string, std::string> exr_metadata(const RenderArguments& arguments
           {"lightwell:multiple_scattering", settings.multiple_scattering ? "true" : "false"},
           {"lightwell:temporal_antialiasing", settings.temporal_antialiasing ? "true" : "false"},
           {"lightwell:photon_guides", settings.photon_guides ? "true" : "false"},
+          {"lightwell:target_fps", std::to_string(settings.target_fps)},
           {"lightwell:seed", std::to_string(settings.seed)},
           {"lightwell:accumulated", std::to_string(frame.accumulated)}};
 }

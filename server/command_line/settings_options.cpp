@@ -121,6 +121,10 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
                "Keep the light that bounces between the microfacets of rough surfaces");
   app.add_flag("--temporal-antialiasing,!--no-temporal-antialiasing", settings.temporal_antialiasing,
                "Smooth realtime's edges over its frames, along with what moves");
+  add_integer(
+      app, "--target-fps", settings.target_fps, 0, 240,
+      "Frames a second of realtime: --samples and --indirect-size are the most, less is taken where it is needed; "
+      "0: just these");
   add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
               "Start of the random sequence: the same seed gives the same picture");
 }

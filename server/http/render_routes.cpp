@@ -31,6 +31,7 @@ Order make_order(const StagedScene& stage, PlacedCamera camera, double time_s, g
   order.shot.request.camera = std::move(camera);
   order.shot.request.size_px = size_px;
   order.shot.request.settings = settings;
+  order.shot.request.settings.target_fps = 0;  // the same request gives the same bytes
   order.shot.request.want_linear = format == ImageFormat::kExr;
   order.shot.request.want_display = format != ImageFormat::kExr;
   return order;

@@ -49,8 +49,9 @@ std::optional<Problem> SequencePlan::read_settings(const ServeOptions& options) 
   if (request_.spp_frames > static_cast<std::uint32_t>(options.limits.max_spp_frames))
     return protocol::make_problem(
         422, "a picture may have at most " + std::to_string(options.limits.max_spp_frames) + " frames", "/spp_frames");
-  const auto settings = with_spec(options.settings, request_.settings, size_px, options.limits, "/settings");
+  auto settings = with_spec(options.settings, request_.settings, size_px, options.limits, "/settings");
   if (!settings) return settings.problem();
+  settings->target_fps = 0;  // nobody waits, and the same request gives the same bytes
   for (std::size_t i = 0; i < request_.views.size(); ++i) {
     const auto view = view_kind_from_name(request_.views[i]);
     if (!view)

@@ -115,5 +115,29 @@ TEST(RealtimeCache, AThinWallDoesNotLeak) {
   EXPECT_LT(dark, 0.01f * bright);
 }
 
+// Half a million rays in four milliseconds: where a device does that, nothing has to be given up.
+TEST(RealtimeBudget, GivesUpRaysForTheRate) {
+  SceneMaker maker;
+  maker.room({-1, -1, -1}, {1, 1, 1}, maker.material(lambert(glm::vec3(0.6f), glm::vec3(1.0f))));
+  const Scene scene = maker.take();
+  FrameRequest request;
+  request.camera = kInRoom;
+  request.size_px = {64, 64};
+  request.settings = realtime_settings(1);
+  request.settings.samples = 1024;
+  request.settings.indirect_size = 64;
+  request.settings.target_fps = 240;
+  const auto view = shared_renderer().make_view();
+  std::uint64_t first_rays = 0;
+  for (int frame = 0; frame < 12; ++frame) {
+    const Result<Frame> made = shared_renderer().render(scene, request, *view);
+    ASSERT_TRUE(made.ok());
+    if (frame == 0) first_rays = made->rays;
+    if (frame == 11) {
+      EXPECT_TRUE(made->rays < first_rays || made->total_ms < 1000.0 / 240.0) << made->rays;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lightwell::testing

@@ -261,7 +261,8 @@ class RenderTest(CommandLineTest):
                        ["--patch", "4"], ["--patch", "2", "--triangle-groups", "3", "--no-trace-missed"],
                        ["--patch", "8", "--similarity", "literal", "--normal-threshold", "0.5", "--depth-threshold", "1"],
                        ["--view", "bounce", "--view-index", "1"], ["--view", "patch", "--patch", "4"],
-                       ["--multiple-scattering"], ["--method", "realtime", "--temporal-antialiasing"], ["--environment-rotation", "90", "--environment-strength", "2"],
+                       ["--multiple-scattering"], ["--method", "realtime", "--temporal-antialiasing"],
+                       ["--method", "realtime", "--target-fps", "30"], ["--environment-rotation", "90", "--environment-strength", "2"],
                        ["--shadow-size", "64", "--shadow-filter", "1"], ["--background", "0.1,0.2,0.3"],
                        ["--camera", "0"], ["--eye", "0,1,3", "--target", "0,1,0", "--yfov", "60"],
                        ["--tracer", "embree"], ["--tracer", "compute"], ["--time", "1.5"]]:
