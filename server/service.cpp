@@ -5,6 +5,7 @@
 
 #include "server/operations/log.h"
 #include "server/service_state.h"
+#include "server/video/video_encoder.h"
 
 namespace lightwell {
 namespace {
@@ -51,9 +52,9 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                                             std::size_t{2} * static_cast<std::size_t>(options.limits.max_sessions))),
       quick_workers(std::make_unique<WorkerPool>(kQuickWorkers, kMostQuickWaiting)),
       long_workers(std::make_unique<WorkerPool>(kLongWorkers, kMostLongWaiting)) {
-  services =
-      std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings, leaving,
-                                          metrics, sequences.get(), [this] { return levels(); }, renders_waiting});
+  services = std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings,
+                                                 leaving, metrics, sequences.get(), [this] { return levels(); },
+                                                 renders_waiting, *long_workers, films});
   if (sequences) sequence_workers = std::make_unique<SequenceWorkers>(*sequences, render_loop);
   add_health_routes(routes, *services);
   add_scene_routes(routes, *services);
@@ -75,6 +76,7 @@ void Service::State::load_scenes() {
     first_scene_promise.set_value(*name);
     scenes.add_builtin_scenes();
     scenes_loaded = true;
+    can_encode_video();  // loads the encoder before somebody waits for it
   } catch (...) {
     first_scene_promise.set_exception(std::current_exception());
   }

@@ -44,6 +44,7 @@ struct Service::State {
   RenderLoop render_loop;
   std::unique_ptr<SequenceWorkers> sequence_workers;
   std::atomic<int> renders_waiting = 0;
+  std::atomic<int> films = 0;
   std::unique_ptr<WorkerPool> encoders, quick_workers, long_workers;
   http::RouteTable routes;
   std::unique_ptr<Services> services;

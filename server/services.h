@@ -25,6 +25,8 @@ struct Services {
   SequenceStore* sequences;           // null: there is no folder for them
   std::function<Levels()> levels;     // as they stand now
   std::atomic<int>& renders_waiting;  // requests for pictures that wait for the render thread
+  WorkerPool& long_workers;           // for what takes its time
+  std::atomic<int>& films;            // being made
 };
 
 // Each adds its routes; `services` outlives the table.

@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <charconv>
 
 #include "protocol/names.h"
 #include "protocol/sequence.h"
 #include "server/http/event_stream.h"
+#include "server/sequences/film_stream.h"
 #include "server/sequences/zip_stream.h"
 #include "server/services.h"
+#include "server/video/video_encoder.h"
 
 namespace lightwell {
 namespace {
@@ -12,10 +15,12 @@ namespace {
 using http::Request;
 using http::Response;
 using protocol::make_problem;
+using protocol::Problem;
 using protocol::Sequence;
 using protocol::SequenceState;
 
 constexpr std::uint64_t kMaxJsonBytes = 1u << 20;
+constexpr int kMostFilms = 4;  // made at the same time: each holds pictures
 
 Response refuse(int status, const std::string& detail) {
   return http::problem_response(make_problem(status, detail));
@@ -70,6 +75,24 @@ Response remove(const Services& services, const std::string& id) {
   return {204, {}, {}, {}};
 }
 
+/// The view asked for; empty: the first.
+protocol::Decoded<std::string> view_of(const Request& request) {
+  std::string view;
+  for (const auto& [name, value] : request.query) {
+    if (name != "view") return make_problem(422, "the only parameter known here is view", "/" + name);
+    view = value;
+  }
+  return view;
+}
+
+bool shows(const FrameFile& file, const std::string& view) {
+  return file.name.find("." + view + ".") != std::string::npos;
+}
+
+Problem no_such_view(const std::string& view) {
+  return make_problem(422, "the sequence has no view \"" + view + "\" in a file of its own", "/view");
+}
+
 /// The finished file of a frame that shows the view asked for, or why there is none.
 protocol::Decoded<FrameFile> find_file(const Services& services, const Sequence& sequence, const Request& request) {
   const std::string& text = request.path_parameters[1];
@@ -81,14 +104,11 @@ protocol::Decoded<FrameFile> find_file(const Services& services, const Sequence&
     return make_problem(404, "the sequence has no frame \"" + text + "\"");
   const std::vector<FrameFile> files = services.sequences->files(sequence.id, number);
   if (files.empty()) return make_problem(409, "frame " + std::to_string(number) + " is not finished yet");
-  std::string view;
-  for (const auto& [name, value] : request.query) {
-    if (name != "view") return make_problem(422, "the only parameter known here is view", "/" + name);
-    view = value;
-  }
+  const auto view = view_of(request);
+  if (!view) return view.problem();
   for (const FrameFile& file : files)
-    if (view.empty() || file.name.find("." + view + ".") != std::string::npos) return file;
-  return make_problem(422, "the sequence has no view \"" + view + "\" in a file of its own", "/view");
+    if (view->empty() || shows(file, *view)) return file;
+  return no_such_view(*view);
 }
 
 Response get_frame(const Services& services, const Request& request) {
@@ -106,12 +126,15 @@ Response get_frame(const Services& services, const Request& request) {
   return {200, std::string(type), std::move(bytes).value(), std::move(fields)};
 }
 
+Problem not_done(const Sequence& sequence) {
+  return make_problem(409, "the sequence is not done: " + std::to_string(sequence.frames_done) + " of " +
+                               std::to_string(sequence.frames_total) + " frames are finished");
+}
+
 Response get_archive(const Services& services, const Request& request) {
   const auto sequence = services.sequences->find(request.path_parameters[0]);
   if (!sequence) return no_such_sequence();
-  if (sequence->state != SequenceState::kDone)
-    return refuse(409, "the sequence is not done: " + std::to_string(sequence->frames_done) + " of " +
-                           std::to_string(sequence->frames_total) + " frames are finished");
+  if (sequence->state != SequenceState::kDone) return http::problem_response(not_done(*sequence));
   const std::string tag = quoted(sequence->id + "-zip");
   http::Fields fields{{"ETag", tag},
                       {"Cache-Control", "private, max-age=31536000, immutable"},
@@ -124,6 +147,52 @@ Response get_archive(const Services& services, const Request& request) {
                            " bytes do not fit into a ZIP; fetch its frames one by one");
   auto stream = std::make_shared<ZipStream>(services.sequences->folder().path(sequence->id, ""), std::move(files));
   return {200, "application/zip", {}, std::move(fields), std::move(stream), bytes};
+}
+
+/// The frames that a film is made of, or why there can be none.
+protocol::Decoded<FilmFrames> film_frames(const Services& services, const Sequence& sequence, const Request& request) {
+  const auto asked = protocol::parse_sequence_request(protocol::json_text(sequence.request));
+  if (!asked) return asked.problem();
+  if (asked->format == protocol::ImageFormat::kExr)
+    return make_problem(422, "the sequence's frames are EXR, which no display shows; ask for one in png");
+  const glm::ivec2 size_px(asked->width, asked->height);
+  if (!VideoEncoder::takes(size_px))
+    return make_problem(422, "a film has even sides and at most 36,864 blocks of 16 x 16 pixels; these frames have " +
+                                 std::to_string(size_px.x) + " x " + std::to_string(size_px.y) + " pixels");
+  auto view = view_of(request);
+  if (!view) return view.problem();
+  if (view->empty()) *view = asked->views.front();
+  if (std::find(asked->views.begin(), asked->views.end(), *view) == asked->views.end()) return no_such_view(*view);
+  if (sequence.state != SequenceState::kDone) return not_done(sequence);
+  FilmFrames frames{services.sequences->folder(), sequence.id, {}, size_px, asked->fps};
+  for (const FrameFile& file : services.sequences->files(sequence.id))
+    if (shows(file, *view)) frames.files.push_back(file.name);
+  return frames;
+}
+
+/// A place among the films being made, given back with the last copy; null if there is none.
+std::shared_ptr<void> take_place(std::atomic<int>& films) {
+  if (++films <= kMostFilms) return {&films, [](std::atomic<int>* all) { --*all; }};
+  --films;
+  return nullptr;
+}
+
+Response get_video(const Services& services, const Request& request) {
+  const auto sequence = services.sequences->find(request.path_parameters[0]);
+  if (!sequence) return no_such_sequence();
+  auto frames = film_frames(services, *sequence, request);
+  if (!frames) return http::problem_response(frames.problem());
+  if (!can_encode_video())
+    return refuse(501, "this server was built or runs without an H.264 encoder; fetch the frames, or the archive");
+  const std::string tag = quoted(sequence->id + "-" + frames->files.front() + "-mp4");
+  http::Fields fields{{"ETag", tag},
+                      {"Cache-Control", "private, max-age=31536000, immutable"},
+                      {"Content-Disposition", "attachment; filename=\"" + sequence->id + ".mp4\""}};
+  if (request.if_none_match == tag) return {304, {}, {}, std::move(fields)};
+  std::shared_ptr<void> place = take_place(services.films);
+  if (!place) return refuse(503, std::to_string(kMostFilms) + " films are being made, as many as may be");
+  auto film = std::make_shared<FilmStream>(std::move(frames).value(), services.long_workers, std::move(place));
+  return {200, "video/mp4", {}, std::move(fields), std::move(film), 0};
 }
 
 /// Each time the sequence gets on, all that is known of it.
@@ -172,6 +241,7 @@ void add_sequence_routes(http::RouteTable& table, const Services& services) {
   add("POST", "/v1/sequences/{id}/cancel", Scope::kDrive, kQuick, by_id(cancel));
   add("GET", "/v1/sequences/{id}/frames/{number}", Scope::kView, kQuick, get_frame);
   add("GET", "/v1/sequences/{id}/archive", Scope::kView, kQuick, get_archive);
+  add("GET", "/v1/sequences/{id}/video", Scope::kView, kQuick, get_video);
   add("GET", "/v1/sequences/{id}/events", Scope::kView, kQuick, by_id(get_events));
 }
 

@@ -35,6 +35,8 @@ class BodySource {
   /// The bytes that come next, as they go over the wire; empty: nothing yet; none: the end. Asked again when it has
   /// been woken, and every few seconds. Must not block for long.
   virtual std::optional<std::string> next() = 0;
+  /// After the end: whether all of it came. If not, the connection is closed, by which the client knows.
+  virtual bool is_whole() const { return true; }
   /// Called once, before the first `next`. `wake` may be called from any thread at any time, whether or not anyone
   /// still listens.
   virtual void set_waker(std::function<void()> wake) = 0;

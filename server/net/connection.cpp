@@ -226,7 +226,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     while (transport_->peer() != PeerState::kGone) {
       exchange->woken = false;
       std::optional<std::string> piece = rest.next();
-      if (!piece) co_return true;
+      if (!piece) co_return rest.is_whole();
       if (piece->empty())
         co_await exchange->wait(kBodyPulse);
       else if (!co_await transport_->write(std::move(*piece)))

@@ -23,6 +23,7 @@ class ZipStream : public net::BodySource {
   ZipStream(std::filesystem::path folder, std::vector<FrameFile> files);
 
   std::optional<std::string> next() override;
+  bool is_whole() const override { return ended_; }
   void set_waker(std::function<void()>) override {}
 
  private:

@@ -8,11 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "renderer/error.h"
+#include "server/video/codecs/codecs.h"
 
 namespace lightwell {
 
-/// Whether this build, with the libraries of this machine, can encode H.264.
+/// Whether this build, with the libraries of this machine, can encode H.264. The first call loads them, which takes a
+/// moment.
 bool can_encode_video();
 
 struct VideoPacket {
@@ -24,11 +25,6 @@ struct VideoPacket {
 /// One stream of packets. Not thread-safe.
 class VideoEncoder {
  public:
-  VideoEncoder();
-  ~VideoEncoder();
-  VideoEncoder(const VideoEncoder&) = delete;
-  VideoEncoder& operator=(const VideoEncoder&) = delete;
-
   /// Sides are even, since chroma is halved, and the picture is no larger than what decoders take.
   static bool takes(glm::ivec2 size_px);
 
@@ -38,11 +34,11 @@ class VideoEncoder {
   Result<VideoPacket> encode(std::span<const std::uint8_t> rgbx, glm::ivec2 size_px, int quality, bool want_key);
 
   /// Gives its memory back. The next packet is a key.
-  void rest();
+  void rest() { encoder_.reset(); }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<video_codecs::PacketEncoder> encoder_;
+  glm::ivec2 size_px_{};  // of the encoder
   std::uint64_t next_index_ = 1;
 };
 

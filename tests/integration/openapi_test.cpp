@@ -84,6 +84,7 @@ TEST_F(OpenApiTest, EveryGetAnswersAsItSays) {
     const Answer answer = ask("GET", concrete(path));
     const json& responses = item["get"]["responses"];
     ASSERT_TRUE(responses.contains(std::to_string(answer.status))) << path << answer.body;
+    if (answer.status == 501) continue;  // a build without an encoder
     const std::string type = answer.field("Content-Type");
     EXPECT_TRUE(responses["200"]["content"].contains(type.substr(0, type.find(';')))) << path << ": " << type;
   }

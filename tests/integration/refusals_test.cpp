@@ -2,6 +2,7 @@
 #include <regex>
 
 #include "protocol/openapi_document.h"
+#include "server/video/video_encoder.h"
 #include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/server_fixture.h"
@@ -108,6 +109,29 @@ void ask_what_means_nothing(Answers& answers) {
   answers["upgrade"] = asked.ask("GET", "/v1/sessions/" + asked.session() + "/stream");
 }
 
+/// Films that cannot go on, for all who would make them wait for pictures, until there is one too many.
+Answer ask_for_many_films(Asked& asked, const std::string& target) {
+  const auto get = [&](Line& line) {
+    line.send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    return read_answer(line, true);
+  };
+  asked.studio->held = true;
+  std::vector<std::unique_ptr<Line>> renders, films;
+  for (int i = 0; i < 8; ++i) {
+    renders.push_back(std::make_unique<Line>(asked.server.port()));
+    renders.back()->send(post_text("/v1/render", R"({"scene":"cornell","width":8,"height":8})"));
+  }
+  EXPECT_TRUE(comes_true(
+      [&] { return asked.ask("GET", "/metrics").body.find("\nlightwell_renders_waiting 8\n") != std::string::npos; }));
+  for (int i = 0; i < 4; ++i) {
+    films.push_back(std::make_unique<Line>(asked.server.port()));
+    EXPECT_EQ(get(*films.back()).status, can_encode_video() ? 200 : 501);
+  }
+  Answer answer = asked.ask("GET", target);
+  asked.studio->held = false;
+  return answer;
+}
+
 void ask_for_sequences(Answers& answers) {
   answers["no_folder"] = Asked().until_ready().ask("GET", "/v1/sequences");
   const DataFolder folder;
@@ -137,6 +161,25 @@ void ask_for_sequences(Answers& answers) {
   answers["not_done"] = asked.ask("GET", slow + "/archive");
   asked.ask("DELETE", slow);
   asked.studio->held = false;
+}
+
+void ask_for_films(Answers& answers) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  Asked asked(options);
+  asked.until_ready();
+  const auto film_of = [&](const json& change) {
+    json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 0}};
+    request.update(change);
+    const Answer answer = asked.ask("POST", "/v1/sequences", request.dump());
+    return "/v1/sequences/" + json::parse(answer.body).value("id", "") + "/video";
+  };
+  answers["film_of_exr"] = asked.ask("GET", film_of({{"format", "exr"}}));
+  answers["film_size"] = asked.ask("GET", film_of({{"width", 9}}));
+  const std::string film = film_of(json::object());
+  EXPECT_TRUE(comes_true([&] { return asked.ask("HEAD", film).status != 409; }));
+  answers["films"] = ask_for_many_films(asked, film);
 }
 
 void ask_for_too_much(Answers& answers) {
@@ -247,10 +290,15 @@ std::map<std::string, json> documented() {
 
 TEST(Refusals, AreThoseOfTheDocument) {
   Answers answers;
-  for (const auto& ask_for : {ask_what_is_malformed, ask_what_means_nothing, ask_for_sequences, ask_for_too_much,
-                              ask_for_large_textures, ask_too_often, ask_without_leave, ask_at_the_wrong_time})
+  for (const auto& ask_for :
+       {ask_what_is_malformed, ask_what_means_nothing, ask_for_sequences, ask_for_films, ask_for_too_much,
+        ask_for_large_textures, ask_too_often, ask_without_leave, ask_at_the_wrong_time})
     ask_for(answers);
-  const auto examples = documented();
+  auto examples = documented();
+  // A build has an encoder or has none: the one refuses the fifth film, the other each.
+  const bool encodes = can_encode_video();
+  if (!encodes) answers["no_encoder"] = answers.extract("films").mapped();
+  EXPECT_EQ(examples.erase(encodes ? "no_encoder" : "films"), 1u);
   for (const auto& [name, example] : examples) {
     ASSERT_TRUE(answers.contains(name)) << name << " is shown, and not asked for";
     ASSERT_NE(answers[name].status, 0) << name << " was not answered";

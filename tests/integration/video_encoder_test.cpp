@@ -1,6 +1,7 @@
 // The encoder by itself: colours, keys, sizes, quality; decoded by libavcodec.
 #include "server/video/video_encoder.h"
 
+#include "tests/integration/test_pictures.h"
 #include "tests/integration/video_decoder.h"
 
 namespace lightwell::test {
@@ -18,15 +19,6 @@ Rgbx paint(glm::ivec2 size_px, const ColourAt& colour_at) {
       picture.insert(picture.end(), {colour[0], colour[1], colour[2], 255});
     }
   return picture;
-}
-
-/// Smooth light with some detail in it, moved by `t` pixels.
-Rgbx scene(glm::ivec2 size_px, int t) {
-  return paint(size_px, [&](int x, int y) {
-    const double u = (x + t) * 0.05, v = y * 0.07;
-    const auto channel = [](double value) { return static_cast<std::uint8_t>(128.0 + 90.0 * value); };
-    return Colour{channel(std::sin(u)), channel(std::sin(u + v)), channel(std::cos(v) * std::cos(3.0 * u))};
-  });
 }
 
 TEST(VideoEncoder, ColoursComeBackAsTheyWereAndTheStreamSaysHowToReadThem) {
@@ -60,7 +52,7 @@ TEST(VideoEncoder, PacketsAreCountedAndAKeyComesFirstAndWhenAskedFor) {
   VideoEncoder encoder;
   std::uint64_t index = 0;
   for (const bool want_key : {false, false, true, false}) {
-    const auto packet = encoder.encode(scene({64, 48}, static_cast<int>(index)), {64, 48}, 80, want_key);
+    const auto packet = encoder.encode(moving_picture({64, 48}, static_cast<int>(index)), {64, 48}, 80, want_key);
     ASSERT_TRUE(packet);
     EXPECT_EQ(packet->index, ++index);
     EXPECT_EQ(packet->is_key, want_key || index == 1);
@@ -72,11 +64,11 @@ TEST(VideoEncoder, WhoBeginsAtAnyKeySeesWhatOthersSee) {
   VideoEncoder encoder;
   VideoDecoder from_the_start, from_the_second_key;
   for (int i = 0; i < 12; ++i) {
-    const auto packet = encoder.encode(scene(size_px, i), size_px, 80, i == 5);
+    const auto packet = encoder.encode(moving_picture(size_px, i), size_px, 80, i == 5);
     ASSERT_TRUE(packet);
     const auto first = from_the_start.decode(*packet->bytes);
     ASSERT_TRUE(first) << "picture " << i;
-    EXPECT_GT(psnr(*first, scene(size_px, i)), 32.0);
+    EXPECT_GT(psnr(*first, moving_picture(size_px, i)), 32.0);
     if (i < 5) continue;
     const auto second = from_the_second_key.decode(*packet->bytes);
     ASSERT_TRUE(second) << "picture " << i;
@@ -89,7 +81,7 @@ TEST(VideoEncoder, AnotherSizeAndARestBeginWithAKey) {
   VideoDecoder decoder;
   std::uint64_t index = 0;
   const auto encode = [&](glm::ivec2 size_px) {
-    const auto packet = encoder.encode(scene(size_px, 0), size_px, 80, false);
+    const auto packet = encoder.encode(moving_picture(size_px, 0), size_px, 80, false);
     EXPECT_TRUE(packet);
     EXPECT_EQ(packet->index, ++index);
     const auto decoded = decoder.decode(*packet->bytes);
@@ -111,14 +103,14 @@ TEST(VideoEncoder, MoreQualityIsMoreBytesAndLessError) {
   for (const int quality : {20, 44, 80, 100}) {
     VideoEncoder encoder;
     VideoDecoder decoder;
-    const auto packet = encoder.encode(scene(size_px, 0), size_px, quality, false);
+    const auto packet = encoder.encode(moving_picture(size_px, 0), size_px, quality, false);
     ASSERT_TRUE(packet);
     const auto decoded = decoder.decode(*packet->bytes);
     ASSERT_TRUE(decoded);
     EXPECT_GT(packet->bytes->size(), bytes);
-    EXPECT_GT(psnr(*decoded, scene(size_px, 0)), decibels);
+    EXPECT_GT(psnr(*decoded, moving_picture(size_px, 0)), decibels);
     bytes = packet->bytes->size();
-    decibels = psnr(*decoded, scene(size_px, 0));
+    decibels = psnr(*decoded, moving_picture(size_px, 0));
   }
 }
 
@@ -132,7 +124,7 @@ TEST(VideoEncoder, TakesWhatDecodersTake) {
   for (const glm::ivec2 size_px : {glm::ivec2(2, 2), glm::ivec2(16, 2), glm::ivec2(18, 4096)}) {
     VideoEncoder encoder;
     VideoDecoder decoder;
-    const auto packet = encoder.encode(scene(size_px, 0), size_px, 80, false);
+    const auto packet = encoder.encode(moving_picture(size_px, 0), size_px, 80, false);
     ASSERT_TRUE(packet);
     EXPECT_TRUE(decoder.decode(*packet->bytes)) << size_px.x << " x " << size_px.y;
   }

@@ -43,7 +43,7 @@ LIBRARIES = [
     ("OpenSSL", r"openssl/", ["server/"]),
     ("sockets", r"(sys/(socket|epoll|un)\.h|netinet/|arpa/|netdb\.h)", ["server/"]),
     ("libjpeg-turbo", r"(turbojpeg|jpeglib)\.h", ["server/"]),
-    ("libavcodec", r"(libavcodec|libavutil|libswscale)/", ["server/video/"]),
+    ("libavcodec", r"(libavcodec|libavformat|libavutil|libswscale)/", ["server/video/codecs/"]),
     ("spdlog", r"spdlog/", ["server/"]),
     ("CLI11", r"CLI/", ["server/command_line/"]),
 ]

@@ -11,7 +11,7 @@ extern "C" {
 #include <memory>
 #include <span>
 
-#include "renderer/error.h"
+#include "server/video/codecs/codecs.h"
 
 namespace lightwell::libav {
 

@@ -1,4 +1,4 @@
-#include "server/video/libav.h"
+#include "server/video/codecs/libav.h"
 
 extern "C" {
 #include <libavutil/opt.h>

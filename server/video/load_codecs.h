@@ -1,0 +1,11 @@
+// The module with libavcodec in it.
+#pragma once
+
+#include "server/video/codecs/codecs.h"
+
+namespace lightwell {
+
+/// The module's functions, loaded by the first call; kUnsupported names what is missing. Thread-safe.
+Result<const video_codecs::Table*> video_codecs_table();
+
+}  // namespace lightwell
