@@ -5,6 +5,7 @@
 #include "server/video/video_encoder.h"
 #include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
+#include "tests/integration/malformed_heads.h"
 #include "tests/integration/server_fixture.h"
 #include "tests/unit/rich_gltf.h"
 
@@ -82,6 +83,8 @@ void ask_what_is_malformed(Answers& answers) {
   answers["forbidden"] =
       asked.ask("POST", "/v1/sessions", "{}", "application/json", "Origin: https://elsewhere.example\r\n");
   answers["timeout"] = asked.raw("GET / HT");
+  for (const MalformedHead& head : malformed_heads("/v1/sessions/" + asked.session() + "/stream"))
+    answers[head.name] = asked.raw(head.request);
 }
 
 void ask_what_means_nothing(Answers& answers) {
@@ -315,7 +318,8 @@ TEST(Refusals, AreThoseOfTheDocument) {
       EXPECT_FALSE(answers[name].field("WWW-Authenticate").empty()) << name;
     }
   }
-  for (const auto& [name, answer] : answers) EXPECT_TRUE(examples.contains(name)) << name << " is not in the document";
+  for (const auto& [name, answer] : answers)
+    EXPECT_TRUE(examples.contains(name)) << name << " is not in the document: " << answer.body;
 }
 
 }  // namespace
