@@ -195,14 +195,16 @@ void write(uint slot, Path path, Step next) {
   if (next.found != vec4(0.0)) radiance[path.pixel] = path.before + next.found;
 }
 
+// Not ended early: under a branch a software device reads uniforms once a lane.
 void main() {
-  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
-  if (slot >= path_count) return;
+  const uint invocation = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  const uint slot = min(invocation, path_count - 1u);
   const int from = int(texelFetch(hit_list, int(slot)).x);
   const vec4 state = texelFetch(states_in, from);
   const uint word = texelFetch(pending_in, from).w;
   const uint pixel = path_pixel(word);
   const Path path = Path(fetch_ray(from), state.xyz, state.w, pixel, path_depth(word), path_walls(word),
                          texelFetch(radiance_before, int(pixel)));
-  write(slot, path, meet_surface(path, fetch_hit(from)));
+  const Step next = meet_surface(path, fetch_hit(from));
+  if (invocation < path_count) write(slot, path, next);
 }
