@@ -36,3 +36,22 @@ function(lightwell_compile_quickly target)
     target_compile_options(${target} PRIVATE -O1)
   endif()
 endfunction()
+
+# Code that brings many libraries, as a module that `user` loads from beside the program when it is first needed. In builds
+# for sanitizers it is linked instead, and `user` knows by the definition `linked`: reports and coverage then need no
+# module's symbols.
+function(lightwell_module name)
+  cmake_parse_arguments(ARG "" "USER;LINKED" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  if(LIGHTWELL_SANITIZE OR LIGHTWELL_FUZZERS)
+    lightwell_library(${name} SOURCES ${ARG_SOURCES} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+    target_link_libraries(${ARG_USER} PRIVATE ${name})
+    target_compile_definitions(${ARG_USER} PRIVATE ${ARG_LINKED})
+  else()
+    add_library(${name} MODULE ${ARG_SOURCES})
+    lightwell_flags(${name})
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
+                                             CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    target_link_libraries(${name} PRIVATE glm::glm ${ARG_PRIVATE})
+    add_dependencies(${ARG_USER} ${name})
+  endif()
+endfunction()

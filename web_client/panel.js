@@ -155,11 +155,14 @@ export class Panel {
       label: "Multiple scattering", hint: "Keeps the light that bounces between the microfacets of rough surfaces",
     });
     const temporal_antialiasing = this.setting("temporal_antialiasing", make_toggle, {
-      label: "Temporal anti-aliasing", hint: "With realtime: edges smooth over the frames, along with what moves",
+      label: "Temporal anti-aliasing", hint: "Edges smooth over the frames, along with what moves",
     });
     const target_fps = this.setting("target_fps", make_slider, {
-      label: "Frame rate", values: kFrameRates, format: (value) => (value > 0 ? `at least ${value}/s` : "As it comes"),
-      hint: "With realtime: samples and the indirect map become fewer and smaller where frames would take longer",
+      label: "Frame rate", values: kFrameRates, format: (value) => (value > 0 ? `${value}/s` : "Any"),
+      hint: "Samples and the indirect map become fewer and smaller where frames would take longer than for this rate",
+    });
+    this.keep(["settings"], ({ settings }) => {
+      for (const { row } of [temporal_antialiasing, target_fps]) row.hidden = settings.method !== "realtime";
     });
     return [
       method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row,

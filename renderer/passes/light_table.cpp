@@ -208,6 +208,19 @@ void LightTable::append_sized_lights(std::vector<double> powers, std::size_t pun
   choices.insert(choices.end(), sized_choices.begin(), sized_choices.end());
 }
 
+gl::Defines LightTable::sized_defines() const {
+  gl::Defines defines;
+  if (has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
+  if (has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
+  return defines;
+}
+
+gl::Defines LightTable::defines() const {
+  gl::Defines defines = sized_defines();
+  if (has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
+  return defines;
+}
+
 void LightTable::bind() const {
   light_texels_.bind(UNIT_LIGHT_TABLE);
   choice_texels_.bind(UNIT_LIGHT_CHOICES);

@@ -7,6 +7,7 @@
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
+#include "renderer/gl/variants.h"
 #include "renderer/passes/alias_table.h"
 #include "renderer/passes/emitters.h"
 #include "renderer/passes/environment_cells.h"
@@ -38,6 +39,9 @@ class LightTable {
   void bind() const;
 
   const LightCounts& counts() const { return counts_; }
+  /// Which kinds of light there are: LIGHTS_... of shaders/light_sampling.glsl. Those that have a size alone, or all.
+  gl::Defines sized_defines() const;
+  gl::Defines defines() const;
   bool has_punctual() const { return counts_.punctual > 0; }
   bool has_emitters() const { return has_emitters_; }
   bool has_sized() const { return counts_.sized_share > 0.0f; }

@@ -109,8 +109,7 @@ void PatchSamplesPass::sample_surfaces(const FrameContext& frame, const GBuffer&
   if (samples_.lamps_sampled) {
     defines = gl::joined(gl::joined(defines, frame.scene.texture_defines()), frame.scene.environment_defines());
     defines.emplace_back("HAS_SIZED_LIGHTS 1");
-    if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
-    if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
+    defines = gl::joined(defines, lights.sized_defines());
   }
   auto& variant = programs_->surfaces.with(defines);
   variant.grid.set(grid);
@@ -129,7 +128,7 @@ void PatchSamplesPass::sample_surfaces(const FrameContext& frame, const GBuffer&
 void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& lights, const RadianceCache& cache,
                                  const PatchGrid& grid, const Meeting& meeting) {
   gl::Defines defines = gl::joined(gl::joined(frame.scene.texture_defines(), frame.scene.brdf_defines()),
-                                   gl::joined(frame.scene.environment_defines(), light_kinds(lights)));
+                                   gl::joined(frame.scene.environment_defines(), lights.defines()));
   defines = gl::joined(defines, ClearSamplesPass::defines(frame.scene));
   if (meeting.first) defines.emplace_back("FIRST_HITS 1");
   SampleHitsProgram& variant = programs_->hits.with(defines);

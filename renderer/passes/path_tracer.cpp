@@ -158,10 +158,7 @@ gl::Defines PathTracerPass::defines_for(const DeviceScene& scene, const LightTab
       gl::joined(gl::joined(scene.texture_defines(), scene.brdf_defines()), scene.environment_defines());
   if (scene.is_lambert()) defines.emplace_back("LAMBERT_ONLY 1");
   if (scene.has_clear_walls()) defines.emplace_back("CLEAR_WALLS 1");
-  if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
-  if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
-  if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
-  return defines;
+  return gl::joined(defines, lights.defines());
 }
 
 const Picture& PathTracerPass::run(FrameContext& frame, const Scene& scene, const LightTable& lights) {

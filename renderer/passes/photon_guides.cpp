@@ -101,8 +101,9 @@ PhotonGuidesPass::~PhotonGuidesPass() = default;
 
 void PhotonGuidesPass::run(FrameContext& frame, const Scene& scene, const LightTable& lights,
                            const gl::Defines& defines) {
-  has_guides_ = has_guides_ && frame.settings.photon_guides;
-  if (frame.frame_number % kFramesBetween != 0 || !frame.settings.photon_guides) return;
+  const bool wanted = frame.settings.photon_guides && frame.settings.bounces > 0;  // else no path goes on
+  has_guides_ = has_guides_ && wanted;
+  if (frame.frame_number % kFramesBetween != 0 || !wanted) return;
   seed_ = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
   const std::vector<PhotonTarget> targets = photon_targets(scene, frame.pose, kPhotons, seed_);
   has_guides_ = !targets.empty() && lights.counts().lights > 0;

@@ -88,8 +88,7 @@ void PixelSamplesPass::sample_surfaces(const FrameContext& frame, const PixelSam
   if (samples_lamps(sampling.lights)) {
     defines = gl::joined(gl::joined(defines, frame.scene.texture_defines()), frame.scene.environment_defines());
     defines.emplace_back("HAS_SIZED_LIGHTS 1");
-    if (sampling.lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
-    if (sampling.lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
+    defines = gl::joined(defines, sampling.lights.sized_defines());
   }
   SurfaceSamplesProgram& variant = surfaces_.with(defines);
   variant.grid.set(grid);
@@ -107,7 +106,7 @@ void PixelSamplesPass::sample_surfaces(const FrameContext& frame, const PixelSam
 // No path goes on: the cache has what comes from beyond the hits.
 void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid) {
   gl::Defines defines = gl::joined(gl::joined(frame.scene.texture_defines(), frame.scene.brdf_defines()),
-                                   gl::joined(frame.scene.environment_defines(), light_kinds(sampling.lights)));
+                                   gl::joined(frame.scene.environment_defines(), sampling.lights.defines()));
   defines = gl::joined(gl::joined(defines, defines_), ClearSamplesPass::defines(frame.scene));
   defines.emplace_back("FIRST_HITS 1");
   SampleHitsProgram& variant = hits_.with(defines);

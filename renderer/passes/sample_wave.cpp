@@ -34,12 +34,4 @@ SampleHitsProgram::SampleHitsProgram(const gl::ProgramPtr& p)
       lamps_light_hits(p, "lamps_light_hits"),
       cache_lights_hits(p, "cache_lights_hits") {}
 
-gl::Defines light_kinds(const LightTable& lights) {
-  gl::Defines defines;
-  if (lights.has_punctual()) defines.emplace_back("LIGHTS_PUNCTUAL 1");
-  if (lights.has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
-  if (lights.has_environment()) defines.emplace_back("LIGHTS_ENVIRONMENT 1");
-  return defines;
-}
-
 }  // namespace lightwell

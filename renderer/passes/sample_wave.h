@@ -43,9 +43,6 @@ struct SampleHitsProgram {
   gl::Uniform<int> lamps_light_hits, cache_lights_hits;
 };
 
-/// LIGHTS_... of shaders/light_sampling.glsl.
-gl::Defines light_kinds(const LightTable& lights);
-
 /// Between stages that hand buffers on.
 inline constexpr GLbitfield kBetweenSampleStages = GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT;
 

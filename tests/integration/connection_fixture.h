@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <deque>
 #include <mutex>
 #include <thread>
 
 #include "server/net/server.h"
+#include "tests/integration/echo_application.h"
 #include "tests/integration/line.h"
 
 namespace lightwell::test {
@@ -17,33 +17,16 @@ inline std::string response(int status, const std::string& body, bool keep_alive
          (keep_alive ? "" : "Connection: close\r\n") + "\r\n" + body;
 }
 
-/// Sends every message back.
-class Echo : public net::WebSocketHandler {
+/// Sends every message back, what is binary after a head of its own; says goodbye when told to close.
+class Echo : public EchoSocket {
  public:
-  void opened(std::shared_ptr<net::WebSocketLink> link) override { link_ = std::move(link); }
   void received_text(std::string_view text) override {
-    if (text == "close")
-      waiting_.push_back(net::CloseMessage{4321, "as you wish"});
-    else
-      waiting_.push_back(net::TextMessage{std::string(text)});
-    link_->wake();
+    if (text == "close") return send(net::CloseMessage{4321, "as you wish"});
+    EchoSocket::received_text(text);
   }
   void received_binary(std::string_view bytes) override {
-    auto payload = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end());
-    waiting_.push_back(net::BinaryMessage{"head:", std::move(payload)});
-    link_->wake();
+    send(net::BinaryMessage{"head:", std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end())});
   }
-  net::Outgoing next() override {
-    if (waiting_.empty()) return {};
-    net::Outgoing message = std::move(waiting_.front());
-    waiting_.pop_front();
-    return message;
-  }
-  void closed() override { link_.reset(); }
-
- private:
-  std::shared_ptr<net::WebSocketLink> link_;
-  std::deque<net::Outgoing> waiting_;
 };
 
 /// Six bytes, two at a time, as they are let go.

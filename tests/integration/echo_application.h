@@ -24,12 +24,13 @@ class EchoSocket : public net::WebSocketHandler {
   }
   void closed() override { link_.reset(); }
 
- private:
+ protected:
   void send(net::Outgoing message) {
     waiting_.push_back(std::move(message));
     link_->wake();
   }
 
+ private:
   std::shared_ptr<net::WebSocketLink> link_;
   std::deque<net::Outgoing> waiting_;
 };
