@@ -154,6 +154,7 @@ struct MessageWriter {
             {"triangles", stats.triangles},
             {"exposure_ev", number(stats.exposure_ev)},
             {"accumulated", stats.accumulated},
+            {"method", stats.method},
             {"time_s", number(stats.time_s)}};
   }
 
@@ -216,6 +217,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "denoise", settings.denoise);
   give(object, "multiple_scattering", settings.multiple_scattering);
   give(object, "temporal_antialiasing", settings.temporal_antialiasing);
+  give(object, "hand_over", settings.hand_over);
   give(object, "target_fps", settings.target_fps);
   return object;
 }

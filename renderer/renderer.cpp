@@ -14,6 +14,7 @@
 #include "renderer/passes/bindings.glsl"
 #include "renderer/passes/brdf_table.h"
 #include "renderer/passes/camera_block.h"
+#include "renderer/passes/hand_over.h"
 #include "renderer/passes/history_view.h"
 #include "renderer/tracing/tracer.h"
 
@@ -44,6 +45,19 @@ class View : public RenderView {
     return *reference_;
   }
 
+  /// The picture to show of what a method has made: its own, or one on its way from another method's to `reference`.
+  const Picture& handed_over(const Picture& made, Method method, std::uint32_t frames) {
+    if (method != Method::kReference) {
+      other_methods_picture_ = &made;
+      other_method_ = method;
+      return made;
+    }
+    const bool has_other = other_methods_picture_ && other_methods_picture_->image.size_px() == made.image.size_px();
+    if (frames == 0 || !has_other) return made;
+    if (!hand_over_) hand_over_.emplace(shaders_);
+    return hand_over_->run(made, *other_methods_picture_, other_method_, frames);
+  }
+
   DisplayPass display;
   // How much of the way to the exposure of a picture of this moment to go: all of it in the first picture, when the
   // time jumps, and for a picture that is refined.
@@ -64,14 +78,16 @@ class View : public RenderView {
   std::optional<ThesisMethod> thesis_;
   std::optional<RealtimeMethod> realtime_;
   std::optional<ReferenceMethod> reference_;
+  std::optional<HandOverPass> hand_over_;
+  const Picture* other_methods_picture_ = nullptr;  // made last; its method's own
+  Method other_method_ = Method::kThesis;
 };
 
 // Views of surfaces are those of `thesis`, whatever the method.
 Method method_of(const Settings& settings) {
   const ViewKind view = settings.view;
-  const bool of_light = view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
   const bool of_history = settings.method == Method::kRealtime && settings.bounces > 0 && HistoryViewPass::shows(view);
-  return of_light || of_history ? settings.method : Method::kThesis;
+  return every_method_shows(view) || of_history ? settings.method : Method::kThesis;
 }
 
 std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
@@ -238,10 +254,11 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
                          state_->triangle_groups,
                          trace_scene,
                          state_->timer};
-    const Picture& picture = method == Method::kReference ? view.reference().render(context, scene)
-                             : method == Method::kRealtime
-                                 ? view.realtime().render(context, scene, request.camera, jitter_px)
-                                 : view.thesis().render(context);
+    const Picture& made = method == Method::kReference ? view.reference().render(context, scene)
+                          : method == Method::kRealtime
+                              ? view.realtime().render(context, scene, request.camera, jitter_px)
+                              : view.thesis().render(context);
+    const Picture& picture = view.handed_over(made, method, request.hand_over_frames);
     view.display.resize(request.size_px);
     view.display.measure_exposure(picture, view.exposure_share(request.time_s));
     if (request.want_display) view.display.run(picture, request.settings);

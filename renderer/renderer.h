@@ -75,6 +75,9 @@ std::string_view name_of(ViewKind view);
 std::string_view name_of(ToneMap tone_map);
 std::string_view name_of(LightStrategy strategy);
 
+/// Whether it is of light as all methods know it: the picture, its direct or its indirect part.
+bool every_method_shows(ViewKind view);
+
 /// All views, in the order of their values.
 std::span<const ViewKind> all_view_kinds();
 
@@ -111,6 +114,7 @@ struct Settings {
   /// set.
   int target_fps = 0;
   bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
+  bool hand_over = true;  // of a server's sessions: a picture that has long stood still goes over into `reference`
 };
 
 /// The first setting out of range, by its name on the command line; Done if all are good.
@@ -123,6 +127,9 @@ struct FrameRequest {
   glm::ivec2 size_px{512, 512};
   Settings settings;
   bool accumulate = false;  // add to the view's earlier frames of the very same request (scene unchanged): refinement
+  /// Of `reference`, where the view has shown the very same by another method last: that picture goes over into the
+  /// paths' without a step, and with so many frames all of it is theirs. 0: at once.
+  std::uint32_t hand_over_frames = 0;
   /// Asked at the end of every stage, but for `realtime`, whose frames are always finished; true: the picture is wanted
   /// no more, and `render` gives kUnwanted. May be empty.
   std::function<bool()> is_unwanted;

@@ -66,6 +66,10 @@ Status check_range(const char* name, int value, int least, int most) {
 
 }  // namespace
 
+bool every_method_shows(ViewKind view) {
+  return view == ViewKind::kFinal || view == ViewKind::kDirect || view == ViewKind::kIndirect;
+}
+
 std::span<const ViewKind> all_view_kinds() {
   static const auto kinds = [] {
     std::array<ViewKind, kViews.size()> all{};

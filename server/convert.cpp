@@ -41,6 +41,7 @@ class SettingsReader {
     read_value(spec.denoise, settings_.denoise);
     read_value(spec.multiple_scattering, settings_.multiple_scattering);
     read_value(spec.temporal_antialiasing, settings_.temporal_antialiasing);
+    read_value(spec.hand_over, settings_.hand_over);
     read_value(spec.target_fps, settings_.target_fps);
     if (spec.exposure_ev) {
       settings_.exposure_ev.reset();
@@ -145,6 +146,7 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.denoise = settings.denoise;
   spec.multiple_scattering = settings.multiple_scattering;
   spec.temporal_antialiasing = settings.temporal_antialiasing;
+  spec.hand_over = settings.hand_over;
   spec.target_fps = settings.target_fps;
   return spec;
 }

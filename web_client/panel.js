@@ -2,13 +2,12 @@
 import { make, make_choice, make_icon, make_slider, make_toggle } from "./controls.js";
 import { kPictureSizes } from "./picture_size.js";
 import { scene_title } from "./session_model.js";
-import { short_number } from "./stats.js";
+import { method_name, short_number } from "./stats.js";
 
 const kSamples = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
 const kFrameRates = [0, 5, 10, 15, 20, 24, 30, 60, 120, 240];
 const kIndirectSizes = [32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 const kShadowSizes = [128, 256, 512, 1024, 2048, 4096];
-const kMethodNames = { thesis: "Thesis", realtime: "Realtime", reference: "Reference" };
 const kViews = [
   ["final", "Final picture"], ["direct", "Direct light"], ["indirect", "Indirect light"], ["albedo", "Albedo"],
   ["normal", "Normals"], ["depth", "Depth"], ["position", "Position"], ["normal-depth", "Normal and depth"],
@@ -138,7 +137,7 @@ export class Panel {
       on_change: (name) => this.owner.push({ settings: this.settings_for_method(name) }),
     });
     this.keep(["settings"], (model) => method.set(model.settings.method));
-    this.keep(["methods"], (model) => method.offer(model.methods.map((name) => [name, kMethodNames[name] ?? name])));
+    this.keep(["methods"], (model) => method.offer(model.methods.map((name) => [name, method_name(name)])));
     const samples = this.setting("samples", make_slider, {
       label: "Samples", values: kSamples, hint: "Directions for each pixel of the indirect map",
     });
@@ -157,16 +156,20 @@ export class Panel {
     const temporal_antialiasing = this.setting("temporal_antialiasing", make_toggle, {
       label: "Temporal anti-aliasing", hint: "Edges smooth over the frames, along with what moves",
     });
+    const hand_over = this.setting("hand_over", make_toggle, {
+      label: "Reference when still", hint: "A picture that has stood still for a while goes over into the reference's",
+    });
     const target_fps = this.setting("target_fps", make_slider, {
       label: "Frame rate", values: kFrameRates, format: (value) => (value > 0 ? `${value}/s` : "Any"),
       hint: "Samples and the indirect map become fewer and smaller where frames would take longer than for this rate",
     });
     this.keep(["settings"], ({ settings }) => {
       for (const { row } of [temporal_antialiasing, target_fps]) row.hidden = settings.method !== "realtime";
+      hand_over.row.hidden = settings.method === "reference";
     });
     return [
       method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row,
-      temporal_antialiasing.row, target_fps.row,
+      temporal_antialiasing.row, target_fps.row, hand_over.row,
     ];
   }
 
@@ -187,7 +190,7 @@ export class Panel {
       label: "Bounces", min: 0, max: kEndless, step: 1, format: (step) => names[step] ?? String(step), on_input: tell,
     });
     this.keep(["settings"], ({ settings }) => {
-      slider.limit(settings.method === "reference" ? kEndless : kMostBounces);
+      slider.limit(settings.method === "thesis" ? kMostBounces : kEndless);
       slider.set(settings.bounces === "inf" ? kEndless : settings.bounces);
     });
     return slider;

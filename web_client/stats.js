@@ -8,7 +8,7 @@ const kParts = [
   ["render", "Render"], ["encode", "Encode"], ["network", "Network and waiting"], ["show", "Decode and show"],
 ];
 const kCodecNames = { jpeg: "JPEG", png: "PNG", h264: "H.264" };
-const kFacts = ["Rays", "Triangles", "Picture", "Received", "Exposure", "Device"];
+const kFacts = ["Method", "Rays", "Triangles", "Picture", "Received", "Exposure", "Device"];
 
 /** 1234567 as "1.23M", 1522 as "1,522". */
 export function short_number(value) {
@@ -24,6 +24,11 @@ export const short_ms = (ms) => (ms < 9.95 ? ms.toFixed(1) : String(Math.round(m
 function write(element, text) {
   if (element.textContent !== String(text)) element.textContent = text;
 }
+
+const kMethodNames = { thesis: "Thesis", realtime: "Realtime", reference: "Reference" };
+
+/** A method's name for people; that of the protocol where there is none. */
+export const method_name = (method) => kMethodNames[method] ?? method;
 
 const picture_fact = ({ width, height, codec }) => `${width} × ${height}, ${kCodecNames[codec]}`;
 
@@ -79,7 +84,9 @@ export class Stats {
     this.shown_at_ms.push(times.shown_ms);
     this.bytes.push({ at_ms: times.received_ms, size: frame.payload.byteLength });
     if (latency_ms === null) return;
-    if (this.server) this.server = { ...this.server, accumulated: 1 };  // a refinement that this input has ended
+    if (this.server) {  // a refinement that this input has ended
+      this.server = { ...this.server, accumulated: 1, method: this.model.settings?.method ?? this.server.method };
+    }
     const render = frame.header.render_ms;
     const encode = this.server?.encode_ms ?? 0;
     const show = times.shown_ms - times.received_ms;
@@ -104,8 +111,9 @@ export class Stats {
   summary() {
     if (!this.frame) return "Waiting for the first picture";
     const frames = this.server?.accumulated ?? 1;
-    if (this.frame.header.is_final) return frames > 1 ? `Final, ${frames} samples` : "Final";
-    if (frames > 1) return `Refining, ${frames} samples`;
+    const by = this.server ? ` by ${method_name(this.server.method).toLowerCase()}` : "";
+    if (this.frame.header.is_final) return frames > 1 ? `Final${by}, ${frames} samples` : "Final";
+    if (frames > 1) return `Refining${by}, ${frames} samples`;
     const latency = this.latency_ms === null ? "" : ` · ${short_ms(this.latency_ms)} ms`;
     return `${Math.round(this.frame_rate())} fps${latency}`;
   }
@@ -142,6 +150,7 @@ export class Stats {
     const rays = this.server?.rays ?? 0;
     const received = this.bytes.reduce((sum, entry) => sum + entry.size, 0);
     const facts = [
+      this.server ? method_name(this.server.method) : "–",
       `${short_number(rays)} / frame · ${short_number(rays * rate)} / s`,
       short_number(this.server?.triangles ?? this.model.scene_entry().triangles ?? 0),
       this.frame ? picture_fact(this.frame.header) : "–",

@@ -51,7 +51,8 @@ std::optional<Problem> SequencePlan::read_settings(const ServeOptions& options) 
         422, "a picture may have at most " + std::to_string(options.limits.max_spp_frames) + " frames", "/spp_frames");
   auto settings = with_spec(options.settings, request_.settings, size_px, options.limits, "/settings");
   if (!settings) return settings.problem();
-  settings->target_fps = 0;  // nobody waits, and the same request gives the same bytes
+  settings->target_fps = 0;                    // nobody waits, and the same request gives the same bytes
+  settings->hand_over = Settings().hand_over;  // of no account, so that it makes no other name either
   for (std::size_t i = 0; i < request_.views.size(); ++i) {
     const auto view = view_kind_from_name(request_.views[i]);
     if (!view)

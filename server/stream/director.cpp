@@ -13,8 +13,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Of the method reference in a picture shown in place of another method's: with fewer it would be noisier.
-constexpr std::uint32_t kFewestReferenceFrames = 32;
 constexpr auto kDevicePause = std::chrono::milliseconds(500);  // after the device was lost
 constexpr std::chrono::duration<double> kNearlyDone(0.008);    // a picture with no more to do is finished all the same
 constexpr auto kKeyInterval = std::chrono::seconds(2);         // between keys of video that were asked for
@@ -39,8 +37,9 @@ SteadyTime Director::due_at(SteadyTime now) {
 }
 
 bool Director::goes_over_into_reference() const {
-  return options_.still_before_reference.count() > 0 && !in_reference_ &&
-         take_.request.settings.method != Method::kReference;
+  const Settings& settings = take_.request.settings;
+  return options_.still_before_reference.count() > 0 && settings.hand_over && !in_reference_ &&
+         settings.method != Method::kReference && every_method_shows(settings.view);
 }
 
 std::uint32_t Director::frames_wanted() const {
@@ -77,6 +76,7 @@ Result<Shot> Director::take_fresh_shot() {
   if (!camera) return invalid_input(camera.problem().pointer, camera.problem().detail);
   request.camera = std::move(camera).value();
   take_.request = request;
+  take_.method = request.settings.method;
   take_.shown = true;
   take_.is_final = false;
   if (state.revision == finished_revision_) request.is_unwanted = gives_way_to_inputs();
@@ -99,7 +99,8 @@ PictureGrade Director::choose_grade() {
 }
 
 /// The very same again, added to what is there; from the beginning if that was smaller than asked for. Pictures are
-/// shown at every doubling: each then has visibly less noise.
+/// shown at every doubling: each then has visibly less noise. Where `reference` takes over, its paths come into the
+/// picture that stands little by little.
 Shot Director::take_refining_shot() {
   if (take_.request.size_px != take_.state->size_px) {
     take_.request.size_px = take_.state->size_px;
@@ -107,10 +108,13 @@ Shot Director::take_refining_shot() {
   }
   const std::uint32_t frames = accumulated_ + 1;
   take_.is_final = frames >= frames_wanted();
-  const bool too_noisy = in_reference_ && frames < kFewestReferenceFrames;
-  take_.shown = take_.is_final || (std::has_single_bit(frames) && !too_noisy);
+  take_.shown = take_.is_final || std::has_single_bit(frames);
   FrameRequest request = take_.request;
-  if (in_reference_) request.settings.method = Method::kReference;
+  if (in_reference_) {
+    request.settings.method = Method::kReference;
+    request.hand_over_frames = frames_wanted();
+  }
+  take_.method = request.settings.method;
   request.accumulate = accumulated_ > 0;
   request.is_unwanted = [session = session_, revision = take_.state->revision] {
     return session->state()->revision != revision;
@@ -237,6 +241,7 @@ void Director::describe(const Take& take, const Frame& frame, Picture& picture) 
   stats.triangles = frame.triangles;
   stats.exposure_ev = frame.exposure_ev;
   stats.accumulated = frame.accumulated;
+  stats.method = name_of(take.method);
   stats.time_s = take.request.time_s;
 }
 

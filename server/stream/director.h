@@ -55,7 +55,8 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
     FrameRequest request;
     PictureGrade grade;
     SteadyTime start{};
-    bool shown = true;  // or only added to what the next one shows
+    Method method = Method::kThesis;  // that it is made by: the session's or `reference`
+    bool shown = true;                // or only added to what the next one shows
     bool is_final = false;
   };
 

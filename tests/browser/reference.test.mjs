@@ -16,6 +16,8 @@ after(() => fixture.stop());
 
 const status = () => page.textContent("#status-text");
 
+const method_shown = () => page.textContent("#section-stats dl.facts dd");  // the first of them
+
 const bounces = () => page.locator(".row", { has: fixture.setting("Bounces") }).locator("output").textContent();
 
 test("bounces without a limit come and go with the method", async () => {
@@ -32,8 +34,10 @@ test("the final picture is refined by reference, and a drag ends that at once", 
   await page.keyboard.press("Space");
   await viewer.final_picture();
   await viewer.until("pictures by reference", () => viewer.stage(), (stage) => stage.final !== "true");
-  await viewer.until("the samples to be told", status, (text) => /Refining, \d+ samples/.test(text));
+  await viewer.until("the samples to be told", status, (text) => /Refining by reference, \d+ samples/.test(text));
+  await viewer.until("the method to be told", method_shown, (name) => name === "Reference");
   await fixture.keep("desktop-reference");
   await fixture.pictures_around(() => viewer.drag({ x: 500, y: 450 }, { x: 560, y: 460 }));
+  await viewer.until("the method to be told", method_shown, (name) => name === "Thesis");
   assert.deepEqual(viewer.errors, []);
 });

@@ -127,7 +127,7 @@ TEST_F(ReferenceStreamTest, WhatStandsStillForLongGoesOverIntoReferenceAndBackAt
   StreamClient client(server_.port(), make_session());
   client.hello();
   ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.is_final; }));
-  const auto refined = client.next_frame();  // the first with enough samples
+  const auto refined = client.next_frame();  // the first of reference
   ASSERT_TRUE(refined);
   EXPECT_FALSE(refined->is_final);
   const auto is_reference = [](const FrameRequest& request) { return request.settings.method == Method::kReference; };
@@ -135,6 +135,8 @@ TEST_F(ReferenceStreamTest, WhatStandsStillForLongGoesOverIntoReferenceAndBackAt
   const auto first = std::find_if(requests.begin(), requests.end(), is_reference);
   ASSERT_NE(first, requests.end());
   EXPECT_EQ(first - requests.begin(), 1 + 64);  // after the warm-up and the whole refinement
+  EXPECT_FALSE(first->accumulate);              // its own paths alone,
+  EXPECT_EQ(first->hand_over_frames, 1024u);    // that come into the picture little by little
   client.input(1, {{"camera", free_camera(1)}});
   ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.input_seq == 1; }));
   requests = studio_->requests();
@@ -144,6 +146,23 @@ TEST_F(ReferenceStreamTest, WhatStandsStillForLongGoesOverIntoReferenceAndBackAt
   ASSERT_NE(moved, requests.end());
   EXPECT_FALSE(is_reference(*moved));
   EXPECT_FALSE(moved->accumulate);
+}
+
+TEST_F(ReferenceStreamTest, ASettingLeavesThePictureToItsMethod) {
+  StreamClient client(server_.port(), make_session());
+  client.hello();
+  client.input(1, {{"settings", {{"hand_over", false}}}});
+  ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.is_final && frame.input_seq == 1; }));
+  EXPECT_FALSE(client.next_frame(1500ms));  // long after it would have gone over
+}
+
+// Reference has no such view: what stands still is as finished as it can be.
+TEST_F(ReferenceStreamTest, ViewsOfSurfacesStay) {
+  StreamClient client(server_.port(), make_session());
+  client.hello();
+  client.input(1, {{"settings", {{"view", "normal"}}}});
+  ASSERT_TRUE(client.frame_where([](const FrameHeader& frame) { return frame.is_final && frame.input_seq == 1; }));
+  EXPECT_FALSE(client.next_frame(1500ms));
 }
 
 TEST_F(StreamPicturesTest, AnyInputAbortsRefinement) {

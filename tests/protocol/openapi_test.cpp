@@ -131,7 +131,7 @@ TEST(OpenApi, ListsEverySettingAndNoOther) {
   all.exposure_ev.emplace();
   all.background.emplace();
   all.seed = 0u;
-  all.denoise = all.multiple_scattering = all.temporal_antialiasing = true;
+  all.denoise = all.multiple_scattering = all.temporal_antialiasing = all.hand_over = true;
   EXPECT_EQ(names_of(schema("Settings")["properties"]), names_of(to_json(all)));
 }
 
