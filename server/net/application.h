@@ -28,7 +28,8 @@ struct Request {
   std::shared_ptr<std::atomic<bool>> gone;  // set once the client has left: its answer is in vain
 };
 
-/// The rest of an answer, made while it is sent: a file that is large, events as they happen. Asked on an I/O thread.
+/// The rest of an answer, made while it is sent: a file that is large, events as they happen. Asked on an I/O thread,
+/// and gone once the server has stopped.
 class BodySource {
  public:
   virtual ~BodySource() = default;
@@ -83,7 +84,8 @@ class WebSocketHandler {
   /// What to send next; monostate: nothing until the link is woken. Asked again when it has been sent, so that what
   /// has become stale in the meantime need not be sent. After a CloseMessage it is not asked again.
   virtual Outgoing next() = 0;
-  /// The last call; also made when the handshake failed and `opened` never came.
+  /// The last call; also made when the handshake failed and `opened` never came. Where the server is stopped it comes
+  /// from the thread that stops it.
   virtual void closed() = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <boost/asio/post.hpp>
 
 #include "server/net/body_decoder.h"
+#include "server/net/exchange.h"
 #include "server/net/transport.h"
 #include "server/net/web_socket.h"
 
@@ -50,34 +51,20 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   ~Connection() { shared_->connections.remove(this); }
 
   void start() {
-    shared_->connections.add(this, [weak = this->weak_from_this()] {
+    const auto weak = this->weak_from_this();
+    const auto drain = [weak] {
       if (auto self = weak.lock()) asio::post(self->executor(), [self] { self->drain(); });
-    });
+    };
+    const auto let_go = [weak] {
+      if (auto self = weak.lock()) self->let_go();
+    };
+    shared_->connections.add(this, {drain, let_go});
     asio::co_spawn(executor(), run(this->shared_from_this()), asio::detached);
   }
 
   void start_refusing() { asio::co_spawn(executor(), refuse_at_once(this->shared_from_this()), asio::detached); }
 
  private:
-  /// Where the answer of a worker is left for the strand. Outlives both.
-  struct Exchange {
-    explicit Exchange(const Strand& strand) : timer(strand) {}
-    void signal() {
-      woken = true;
-      timer.cancel();
-    }
-    /// Until it has been woken, or for so long.
-    Awaitable<void> wait(steady_clock::duration limit) {
-      error_code ignored;
-      timer.expires_after(limit);
-      if (!woken) co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
-    }
-
-    asio::steady_timer timer;
-    bool woken = false;
-    std::optional<Answer> answer;
-  };
-
   const Strand& executor() const { return transport_->strand(); }
 
   Awaitable<void> run(std::shared_ptr<Connection> self) {
@@ -108,7 +95,12 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   void drain() {
     draining_ = true;
     if (idle_) transport_->close();
-    if (exchange_) exchange_->signal();  // a body that never ends asks whether it should
+    if (sends_rest_) exchange_->signal();  // a body that never ends asks whether it should
+  }
+
+  void let_go() {
+    if (web_socket_) web_socket_->let_go();
+    if (exchange_) exchange_->drop();
   }
 
   /// One request and its answer.
@@ -127,7 +119,8 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     Admission admission = shared_->application->admit(head, peer_);
     if (auto* bad = std::get_if<Refusal>(&admission)) co_return co_await refuse(*bad, &head);
     if (auto* web_socket = std::get_if<WebSocketAdmission>(&admission)) {
-      co_await serve_web_socket(transport_->take_stream(), head, std::move(*web_socket), shared_, !buffer_.empty());
+      web_socket_ = make_web_socket(transport_->take_stream(), std::move(*web_socket), shared_);
+      co_await web_socket_->run(head, !buffer_.empty());
       co_return After::kGone;
     }
     co_return co_await serve_http(std::move(head), std::get<HttpAdmission>(admission));
@@ -190,22 +183,25 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
     const auto gone = std::make_shared<std::atomic<bool>>(false);
     const bool may_probe = request.head.minor_version > 0;
     request.gone = gone;
-    auto exchange = std::make_shared<Exchange>(executor());
+    const auto exchange = exchange_ = std::make_shared<Exchange>(executor());
     shared_->application->answer(std::move(request), [self = this->shared_from_this(), exchange](Answer answer) {
-      asio::post(self->executor(), [exchange, answer = std::move(answer)]() mutable {
-        exchange->answer = std::move(answer);
-        exchange->signal();
-      });
+      exchange->leave(std::move(answer));
+      asio::post(self->executor(), [exchange] { exchange->signal(); });
     });
-    while (!exchange->answer) {
+    while (!exchange->answered()) {
       co_await exchange->wait(kWatch);
-      if (!exchange->answer && !*gone) *gone = !co_await still_there(may_probe);
+      if (!exchange->answered() && !*gone) *gone = !co_await still_there(may_probe);
     }
-    if (!co_await transport_->write(std::move(exchange->answer->bytes))) co_return false;
-    if (!exchange->answer->rest) co_return true;
-    exchange_ = exchange;
-    const bool sent = co_await write_rest(*exchange->answer->rest, exchange);
+    const bool sent = co_await transport_->write(std::move(exchange->answer().bytes)) && co_await send_rest(exchange);
     exchange_.reset();
+    co_return sent;
+  }
+
+  Awaitable<bool> send_rest(std::shared_ptr<Exchange> exchange) {
+    if (!exchange->answer().rest) co_return true;
+    sends_rest_ = true;
+    const bool sent = co_await write_rest(*exchange->answer().rest, exchange);
+    sends_rest_ = false;
     co_return sent;
   }
 
@@ -224,7 +220,7 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
       if (auto woken = weak.lock()) asio::post(executor, [woken] { woken->signal(); });
     });
     while (transport_->peer() != PeerState::kGone) {
-      exchange->woken = false;
+      exchange->await_anew();
       std::optional<std::string> piece = rest.next();
       if (!piece) co_return rest.is_whole();
       if (piece->empty())
@@ -251,7 +247,9 @@ class Connection : public std::enable_shared_from_this<Connection<Stream>> {
   bool idle_ = false;   // waits for the first byte of a request
   bool draining_ = false;
   const bool came_late_;                // when the server drained already: one request, if it comes soon
-  std::shared_ptr<Exchange> exchange_;  // while a body is sent as it is made
+  std::shared_ptr<Exchange> exchange_;  // while a request is answered
+  bool sends_rest_ = false;             // its body is sent as it is made
+  std::shared_ptr<WebSocketEnd> web_socket_;
 };
 
 }  // namespace

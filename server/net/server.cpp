@@ -123,6 +123,7 @@ void Server::stop() {
   state_->io.stop();
   for (std::thread& thread : state_->threads) thread.join();
   state_->threads.clear();
+  state_->shared->connections.let_go_all();
 }
 
 void Server::start(Application& application) {

@@ -50,7 +50,8 @@ class Server {
   /// new ones may still ask one thing each, such as how the server does; after it none are accepted.
   bool drain(std::chrono::milliseconds limit);
 
-  /// Ends the I/O threads: the application is not called any more, and answers it still gives go nowhere.
+  /// Ends the I/O threads. WebSockets that are open are told that they are closed, and everything of the application's
+  /// is let go; it is not called any more, and answers it still gives go nowhere.
   void stop();
 
  private:

@@ -16,30 +16,41 @@ bool BudgetShare::grow_to(std::uint64_t bytes) {
   return true;
 }
 
-void ConnectionSet::add(const void* connection, std::function<void()> drain) {
+void ConnectionSet::add(const void* connection, ConnectionCalls calls) {
   std::lock_guard lock(mutex_);
-  if (!draining_) drains_[connection] = std::move(drain);
+  (draining_ ? late_ : open_)[connection] = std::move(calls);
 }
 
 void ConnectionSet::remove(const void* connection) {
   std::lock_guard lock(mutex_);
-  drains_.erase(connection);
-  if (drains_.empty()) emptied_.notify_all();
+  late_.erase(connection);
+  open_.erase(connection);
+  if (open_.empty()) emptied_.notify_all();
 }
 
 int ConnectionSet::size() const {
   std::lock_guard lock(mutex_);
-  return static_cast<int>(drains_.size());
+  return static_cast<int>(open_.size());
 }
 
 void ConnectionSet::drain_all() {
-  std::unordered_map<const void*, std::function<void()>> drains;
+  Calls open;
   {
     std::lock_guard lock(mutex_);
     draining_ = true;
-    drains = drains_;
+    open = open_;
   }
-  for (const auto& [connection, drain] : drains) drain();
+  for (const auto& [connection, calls] : open) calls.drain();
+}
+
+void ConnectionSet::let_go_all() {
+  Calls all;
+  {
+    std::lock_guard lock(mutex_);
+    all = open_;
+    all.insert(late_.begin(), late_.end());
+  }
+  for (const auto& [connection, calls] : all) calls.let_go();
 }
 
 bool ConnectionSet::draining() const {
@@ -49,7 +60,7 @@ bool ConnectionSet::draining() const {
 
 bool ConnectionSet::wait_until_empty(std::chrono::milliseconds limit) {
   std::unique_lock lock(mutex_);
-  return emptied_.wait_for(lock, limit, [this] { return drains_.empty(); });
+  return emptied_.wait_for(lock, limit, [this] { return open_.empty(); });
 }
 
 }  // namespace lightwell::net

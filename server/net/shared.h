@@ -50,21 +50,31 @@ class BudgetShare {
   std::uint64_t taken_ = 0;
 };
 
+/// What a connection can be told.
+struct ConnectionCalls {
+  std::function<void()> drain;   // to end soon; from any thread, at most once
+  std::function<void()> let_go;  // of all that is the application's; when no I/O thread runs any more
+};
+
 /// The connections that are open, so that they can be told to end and waited for.
 class ConnectionSet {
  public:
-  /// `drain` is called from any thread, at most once. One that comes while the others are drained is not waited for.
-  void add(const void* connection, std::function<void()> drain);
+  /// One that comes while the others are drained is not waited for.
+  void add(const void* connection, ConnectionCalls calls);
   void remove(const void* connection);
+  /// Those that are waited for.
   int size() const;
   void drain_all();
+  /// Also those that are not waited for.
+  void let_go_all();
   bool draining() const;
   bool wait_until_empty(std::chrono::milliseconds limit);
 
  private:
   mutable std::mutex mutex_;
   std::condition_variable emptied_;
-  std::unordered_map<const void*, std::function<void()>> drains_;
+  using Calls = std::unordered_map<const void*, ConnectionCalls>;
+  Calls open_, late_;
   bool draining_ = false;
 };
 

@@ -53,7 +53,9 @@ bool ends_within_character(std::string_view text) {
 }
 
 template <class Stream>
-class WebSocketConnection : public WebSocketLink, public std::enable_shared_from_this<WebSocketConnection<Stream>> {
+class WebSocketConnection : public WebSocketEnd,
+                            public WebSocketLink,
+                            public std::enable_shared_from_this<WebSocketConnection<Stream>> {
  public:
   WebSocketConnection(Stream stream, WebSocketAdmission admission, std::shared_ptr<Shared> shared)
       : shared_(std::move(shared)),
@@ -73,16 +75,23 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
     asio::post(strand_, [self = this->shared_from_this()] { beast::get_lowest_layer(self->stream_).close(); });
   }
 
-  asio::awaitable<void> run(const RequestHead& head, bool early_bytes) {
+  asio::awaitable<void> run(const RequestHead& head, bool early_bytes) override {
     const bool open = !early_bytes && co_await accept(head);
     try {
       if (open) co_await converse();
     } catch (const std::exception&) {  // out of memory, say: the end of this conversation alone
       beast::get_lowest_layer(stream_).close();
     }
-    closed_ = true;
     woken_.cancel();
+    let_go();
+  }
+
+  /// The handler has the link, by which the two would keep each other.
+  void let_go() override {
+    if (closed_) return;
+    closed_ = true;
     admission_.handler->closed();
+    admission_.handler.reset();
   }
 
  private:
@@ -184,18 +193,14 @@ class WebSocketConnection : public WebSocketLink, public std::enable_shared_from
 
 }  // namespace
 
-asio::awaitable<void> serve_web_socket(TcpStream stream, const RequestHead& head, WebSocketAdmission admission,
-                                       std::shared_ptr<Shared> shared, bool early_bytes) {
-  auto connection =
-      std::make_shared<WebSocketConnection<TcpStream>>(std::move(stream), std::move(admission), std::move(shared));
-  co_await connection->run(head, early_bytes);
+std::shared_ptr<WebSocketEnd> make_web_socket(TcpStream stream, WebSocketAdmission admission,
+                                              std::shared_ptr<Shared> shared) {
+  return std::make_shared<WebSocketConnection<TcpStream>>(std::move(stream), std::move(admission), std::move(shared));
 }
 
-asio::awaitable<void> serve_web_socket(TlsStream stream, const RequestHead& head, WebSocketAdmission admission,
-                                       std::shared_ptr<Shared> shared, bool early_bytes) {
-  auto connection =
-      std::make_shared<WebSocketConnection<TlsStream>>(std::move(stream), std::move(admission), std::move(shared));
-  co_await connection->run(head, early_bytes);
+std::shared_ptr<WebSocketEnd> make_web_socket(TlsStream stream, WebSocketAdmission admission,
+                                              std::shared_ptr<Shared> shared) {
+  return std::make_shared<WebSocketConnection<TlsStream>>(std::move(stream), std::move(admission), std::move(shared));
 }
 
 }  // namespace lightwell::net

@@ -1,5 +1,6 @@
 // How connections end, and who is left waiting: stalls, clients that leave, a drain, too many at once.
 #include "tests/integration/connection_fixture.h"
+#include "tests/integration/stream_client.h"
 
 namespace lightwell::test {
 namespace {
@@ -83,6 +84,75 @@ TEST_F(ConnectionTest, IdleAndHalfwayConnectionsDelayNobody) {
   EXPECT_EQ(ask(port(), "GET", "/a").status, 200);
   EXPECT_LT(std::chrono::steady_clock::now() - start,
             net::ServerOptions().head_timeout);  // waits for none of them to end
+}
+
+/// Counts itself while it lives.
+class Counted {
+ public:
+  explicit Counted(std::atomic<int>& count) : count_(count) { ++count_; }
+  ~Counted() { --count_; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+
+ private:
+  std::atomic<int>& count_;
+};
+
+/// Keeps account of its WebSockets and bodies; answers "/later" when it is told to.
+class CountingApplication : public EchoApplication {
+ public:
+  CountingApplication() : EchoApplication(1000) {}
+
+  net::Admission admit(const net::RequestHead& head, const net::Peer& peer) override {
+    if (!head.wants_web_socket) return EchoApplication::admit(head, peer);
+    return net::WebSocketAdmission{std::make_shared<Socket>(*this), {}, 1000};
+  }
+  void answer(net::Request request, std::function<void(net::Answer)> done) override {
+    if (request.head.path != "/later") return done(unfinished_answer());
+    later = std::move(done);
+    ++asked_later;
+  }
+  net::Answer unfinished_answer() {
+    return {"HTTP/1.1 200 OK\r\nContent-Length: 6\r\n\r\n", std::make_shared<Body>(*this)};
+  }
+
+  std::atomic<int> alive = 0, closed = 0, asked_later = 0;
+  std::function<void(net::Answer)> later;
+
+ private:
+  struct Socket : EchoSocket {
+    explicit Socket(CountingApplication& owner) : application(owner), counted(owner.alive) {}
+    void closed() override {
+      EchoSocket::closed();
+      ++application.closed;
+    }
+    CountingApplication& application;
+    const Counted counted;
+  };
+  struct Body : Drip {
+    explicit Body(CountingApplication& owner) : counted(owner.alive) {}
+    const Counted counted;
+  };
+};
+
+TEST(ConnectionStop, LetsGoOfAllThatIsTheApplications) {
+  net::Server server((net::ServerOptions()));
+  auto application = std::make_unique<CountingApplication>();
+  server.start(*application);
+  WebSocketClient web_socket;
+  ASSERT_EQ(web_socket.open(server.port(), "/"), 101);
+  Line body(server.port()), waiting(server.port());
+  body.send("GET /body HTTP/1.1\r\nHost: a\r\n\r\n");
+  waiting.send("GET /later HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_TRUE(body.receive_until("\r\n\r\n").starts_with("HTTP/1.1 200 "));
+  EXPECT_TRUE(comes_true([&] { return application->asked_later == 1; }));
+  EXPECT_EQ(application->alive, 2);
+  server.stop();
+  EXPECT_EQ(application->alive, 0);
+  EXPECT_EQ(application->closed, 1);  // the WebSocket has been told
+  application->later(application->unfinished_answer());
+  EXPECT_EQ(application->alive, 0);  // late, and kept by nobody
+  application.reset();
 }
 
 TEST(ConnectionLimit, TurnsAwayWhatIsTooMany) {
