@@ -74,7 +74,8 @@ net::Admission Service::State::admit_stream(const net::RequestHead& head, const 
   const bool named = lists_subprotocol(subprotocols);
   if (!subprotocols.empty() && !named) return Refusal{400, "the WebSocket subprotocol spoken here is lightwell.v1", {}};
   const std::shared_ptr<Session> session = sessions.find(session_id);
-  if (!session) return Refusal{404, "there is no such session, or it has ended", {}};
+  if (!session && sessions.keeps_sessions()) return net::HttpAdmission{};  // a worker looks whether it can be had
+  if (!session) return refusal_of(no_such_session());
   auto viewer = session->open_stream(scopes.has(Scope::kDrive));
   if (!viewer) return refusal_of(viewer.problem());
   return net::WebSocketAdmission{std::move(viewer).value(),

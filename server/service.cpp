@@ -28,8 +28,11 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
       access(options.access),
       connections(std::move(open_connections)),
       scenes(options.limits),
-      sequences(options.data_dir.empty() ? nullptr : std::make_unique<SequenceStore>(options, scenes)),
-      sessions(options.limits),
+      scene_files(options.data_dir.empty() ? nullptr
+                                           : std::make_unique<SceneFiles>(options.data_dir, scenes, options.limits)),
+      sequences(scene_files ? std::make_unique<SequenceStore>(options, scenes, *scene_files) : nullptr),
+      session_keeper(scene_files ? std::make_unique<SessionKeeper>(options.data_dir, *scene_files) : nullptr),
+      sessions(options.limits, session_keeper.get()),
       surroundings{{scenes, options.limits, options.settings},
                    metrics,
                    [this] { render_loop.wake(); },
@@ -40,6 +43,9 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                    },
                    [this](std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account) {
                      direct(std::move(session), std::move(account));
+                   },
+                   [this](std::shared_ptr<const Session> session) {
+                     if (session_keeper) session_keeper->changed(std::move(session));
                    }},
       render_loop(
           std::move(make_source), [this] { return warm_up_shot(); },
@@ -55,6 +61,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
   services = std::make_unique<Services>(Services{options, scenes, sessions, render_loop, *encoders, surroundings,
                                                  leaving, metrics, sequences.get(), [this] { return levels(); },
                                                  renders_waiting, *long_workers, films});
+  if (sequences) scene_files->add_user([this](const std::string& digest) { return sequences->uses_scene(digest); });
   if (sequences) sequence_workers = std::make_unique<SequenceWorkers>(*sequences, render_loop);
   add_health_routes(routes, *services);
   add_scene_routes(routes, *services);

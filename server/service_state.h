@@ -8,6 +8,7 @@
 #include "server/sequences/sequence_workers.h"
 #include "server/service.h"
 #include "server/services.h"
+#include "server/session/session_keeper.h"
 
 namespace lightwell {
 
@@ -32,7 +33,9 @@ struct Service::State {
   const std::function<int()> connections;
   Metrics metrics;
   SceneStore scenes;
+  std::unique_ptr<SceneFiles> scene_files;  // with what is below null if there is no data folder
   std::unique_ptr<SequenceStore> sequences;
+  std::unique_ptr<SessionKeeper> session_keeper;
   SessionStore sessions;
   SessionSurroundings surroundings;
   std::atomic<bool> leaving = false;              // not ready any more

@@ -109,11 +109,11 @@ Response post_render(const Services& services, const Request& request) {
 }
 
 Response get_frame(const Services& services, const Request& request) {
-  const std::shared_ptr<Session> session = services.sessions.find(request.path_parameters[0]);
-  if (!session) return http::problem_response(protocol::make_problem(404, "there is no such session, or it has ended"));
+  const auto session = services.sessions.find_or_take_up(request.path_parameters[0], services.surroundings);
+  if (!session) return http::problem_response(session.problem());
   const auto query = protocol::parse_frame_query(request.query);
   if (!query) return http::problem_response(query.problem());
-  auto order = order_of(*session->state(), *query, services);
+  auto order = order_of(*(*session)->state(), *query, services);
   if (!order) return http::problem_response(order.problem());
   return carry_out(std::move(order).value(), services, request);
 }

@@ -10,8 +10,15 @@ using http::Response;
 
 constexpr std::uint64_t kMaxJsonBytes = 1u << 20;
 
-Response no_such_session() {
-  return http::problem_response(protocol::make_problem(404, "there is no such session, or it has ended"));
+std::string address_of(const Services& services, const Session& session) {
+  return services.options.base_path + "/v1/sessions/" + session.id();
+}
+
+/// Says where the session is, by which a balancer learns which server has it.
+Response describe(const Services& services, const Session& session) {
+  Response response = http::json_response(200, protocol::to_json(session.describe()));
+  response.headers.emplace_back("Content-Location", address_of(services, session));
+  return response;
 }
 
 /// How long the session may stand idle: as asked for, if that is within what the server gives.
@@ -35,29 +42,40 @@ Response create_session(const Services& services, std::string_view body) {
   if (!session) return http::problem_response(session.problem());
   (*session)->begin();
   Response response = http::json_response(201, protocol::to_json((*session)->describe()));
-  response.headers.emplace_back("Location", services.options.base_path + "/v1/sessions/" + (*session)->id());
+  response.headers.emplace_back("Location", address_of(services, **session));
   return response;
 }
 
 Response get_session(const Services& services, const std::string& id) {
-  const std::shared_ptr<Session> session = services.sessions.find(id);
-  if (!session) return no_such_session();
-  return http::json_response(200, protocol::to_json(session->describe()));
+  const auto session = services.sessions.find_or_take_up(id, services.surroundings);
+  return session ? describe(services, **session) : http::problem_response(session.problem());
 }
 
 Response patch_session(const Services& services, const std::string& id, std::string_view body) {
-  const std::shared_ptr<Session> session = services.sessions.find(id);
-  if (!session) return no_such_session();
+  const auto session = services.sessions.find_or_take_up(id, services.surroundings);
+  if (!session) return http::problem_response(session.problem());
   const auto patch = protocol::parse_session_patch(body);
   if (!patch) return http::problem_response(patch.problem());
-  const auto changed = session->apply(*patch);
-  if (!changed) return http::problem_response(changed.problem());
-  return http::json_response(200, protocol::to_json(*changed));
+  if (const auto problem = (*session)->apply(*patch)) return http::problem_response(*problem);
+  services.sessions.keep(**session);
+  return describe(services, **session);
 }
 
 Response delete_session(const Services& services, const std::string& id) {
-  if (!services.sessions.end(id)) return no_such_session();
+  const auto session = services.sessions.find_or_take_up(id, services.surroundings);
+  if (!session) return http::problem_response(session.problem());
+  services.sessions.end(id);
   return {204, {}, {}, {}};
+}
+
+/// A handshake comes this far if its session is not here: workers may take it up, but open no WebSocket.
+Response take_up_for_stream(const Services& services, const std::string& id) {
+  const auto session = services.sessions.find_or_take_up(id, services.surroundings);
+  if (!session) return http::problem_response(session.problem());
+  Response response =
+      http::problem_response(protocol::make_problem(503, "the session has just come here; open its stream again"));
+  response.headers.emplace_back("Content-Location", address_of(services, **session));
+  return response;
 }
 
 }  // namespace
@@ -73,9 +91,8 @@ void add_session_routes(http::RouteTable& table, const Services& services) {
   table.add({"PATCH", "/v1/sessions/{id}", Scope::kDrive, kQuick, kMaxJsonBytes, json, [&](const Request& request) {
                return patch_session(services, request.path_parameters[0], request.body);
              }});
-  // Handshakes never come this far: the service admits them by itself.
-  table.add({"GET", "/v1/sessions/{id}/stream", Scope::kView, kQuick, 0, {}, [](const Request&) {
-               return http::problem_response(protocol::make_problem(426, "a stream is a WebSocket"));
+  table.add({"GET", "/v1/sessions/{id}/stream", Scope::kView, kQuick, 0, {}, [&](const Request& request) {
+               return take_up_for_stream(services, request.path_parameters[0]);
              }});
   table.add({"DELETE", "/v1/sessions/{id}", Scope::kDrive, kQuick, 0, {}, [&](const Request& request) {
                return delete_session(services, request.path_parameters[0]);

@@ -94,6 +94,7 @@ struct Metrics::State {
       histograms("lightwell_request_seconds", "Time from a request's being read to its answer");
   Counter& received = counters("lightwell_received_bytes_total", "Bytes of request bodies").Add({});
   Counter& rebuilds = counters("lightwell_device_rebuilds_total", "Times the lost device was set up again").Add({});
+  Counter& taken_up = counters("lightwell_sessions_taken_up_total", "Sessions of other servers taken up").Add({});
   Gauge& sessions = gauges("lightwell_sessions", "Sessions").Add({});
   Gauge& viewers = gauges("lightwell_viewers", "Streams that are open").Add({});
   Gauge& connections = gauges("lightwell_connections", "Connections that are open").Add({});
@@ -159,6 +160,10 @@ void Metrics::device_memory(const DeviceMemory& memory) {
 
 void Metrics::device_rebuilt() {
   state_->rebuilds.Increment();
+}
+
+void Metrics::session_taken_up() {
+  state_->taken_up.Increment();
 }
 
 std::string Metrics::exposition(const Levels& levels) const {

@@ -46,6 +46,8 @@ class Metrics {
   void bytes_received(std::uint64_t bytes);
   void device_memory(const DeviceMemory& memory);
   void device_rebuilt();
+  /// A session of another server goes on at this one.
+  void session_taken_up();
 
   /// The text format of Prometheus, version 0.0.4.
   std::string exposition(const Levels& levels) const;

@@ -5,10 +5,8 @@
 
 #include "protocol/names.h"
 #include "renderer/scene/builtin.h"
-#include "renderer/scene/gltf/load_gltf.h"
 #include "server/convert.h"
 #include "server/operations/log.h"
-#include "server/scenes/digest.h"
 
 namespace lightwell {
 namespace {
@@ -92,11 +90,7 @@ protocol::Decoded<SceneStore::Stored> SceneStore::upload(const std::string& name
     std::lock_guard lock(mutex_);  // before the long work, so that what must fail fails early
     if (auto problem = refuse_upload(name, glb.size())) return *problem;
   }
-  LoadLimits load_limits;
-  load_limits.max_file_bytes = limits_.max_upload_bytes;
-  load_limits.max_triangles = limits_.max_triangles;
-  load_limits.max_texture_bytes = limits_.max_texture_bytes;
-  Result<Scene> scene = load_glb(glb, load_limits);
+  Result<Scene> scene = load_glb(glb, load_limits(limits_));
   if (!scene) return problem_of(scene.error());
   auto stage = stage_upload(std::move(scene).value(), name);
   Entry entry{stage->entry(name, false), stage, std::make_shared<const std::vector<std::byte>>(glb.begin(), glb.end())};
@@ -121,10 +115,6 @@ std::shared_ptr<const StagedScene> SceneStore::find(const std::string& name) con
   std::lock_guard lock(mutex_);
   const auto found = scenes_.find(name);
   return found == scenes_.end() ? nullptr : found->second.scene;
-}
-
-std::string SceneStore::Source::digest() const {
-  return scene_digest(*scene->scene());
 }
 
 std::optional<SceneStore::Source> SceneStore::source(const std::string& name) const {
@@ -154,6 +144,14 @@ std::vector<protocol::SceneEntry> SceneStore::entries() const {
   };
   std::stable_sort(entries.begin(), entries.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return entries;
+}
+
+LoadLimits load_limits(const ServeLimits& limits) {
+  LoadLimits load;
+  load.max_file_bytes = limits.max_upload_bytes;
+  load.max_triangles = limits.max_triangles;
+  load.max_texture_bytes = limits.max_texture_bytes;
+  return load;
 }
 
 std::shared_ptr<const StagedScene> stage_upload(Scene scene, const std::string& name, bool default_light) {

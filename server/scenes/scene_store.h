@@ -9,6 +9,7 @@
 #include <string>
 
 #include "protocol/messages.h"
+#include "renderer/scene/gltf/load_gltf.h"
 #include "server/scenes/staged_scene.h"
 #include "server/serve.h"
 
@@ -41,8 +42,6 @@ class SceneStore {
   struct Source {
     std::shared_ptr<const StagedScene> scene;
     std::shared_ptr<const std::vector<std::byte>> glb;  // the upload; null for others
-    /// Of all that its pictures depend on: the same for the same scene, on every server.
-    std::string digest() const;
   };
   std::optional<Source> source(const std::string& name) const;
 
@@ -66,6 +65,9 @@ class SceneStore {
   std::map<std::string, Entry> scenes_;
   std::string first_;  // from the command line
 };
+
+/// What an upload may have.
+LoadLimits load_limits(const ServeLimits& limits);
 
 /// A scene from a file, ready to be shown: with `default_light`, lit if it brings no light of its own; what was left
 /// out is in the log.

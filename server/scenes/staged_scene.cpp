@@ -3,6 +3,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "server/convert.h"
+#include "server/scenes/digest.h"
 
 namespace lightwell {
 namespace {
@@ -91,6 +92,11 @@ std::vector<protocol::LightEntry> StagedScene::lights(double time_s) const {
     std::copy_n(glm::value_ptr(parent_from_world), 16, entry.parent_from_world.emplace().begin());
   }
   return entries;
+}
+
+const std::string& StagedScene::digest() const {
+  std::call_once(digest_made_, [this] { digest_ = scene_digest(*scene_); });
+  return digest_;
 }
 
 const Pose& StagedScene::rest() const {

@@ -28,6 +28,9 @@ class StagedScene {
   protocol::Bounds bounds() const;
   glm::vec3 center() const;
 
+  /// Of all that its pictures depend on: the same for the same scene, on every server. Worked out by the first call.
+  const std::string& digest() const;
+
   /// The lights as they stand at a time.
   std::vector<protocol::LightEntry> lights(double time_s) const;
 
@@ -39,6 +42,8 @@ class StagedScene {
   double duration_s_ = 0.0;
   mutable std::once_flag rest_made_;
   mutable Pose rest_;  // bounds alone
+  mutable std::once_flag digest_made_;
+  mutable std::string digest_;
 };
 
 }  // namespace lightwell

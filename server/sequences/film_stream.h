@@ -4,8 +4,8 @@
 
 #include <mutex>
 
+#include "server/data/frame_files.h"
 #include "server/net/application.h"
-#include "server/sequences/frame_files.h"
 #include "server/video/film.h"
 #include "server/worker_pool.h"
 

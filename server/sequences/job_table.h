@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "protocol/sequence.h"
-#include "server/sequences/database.h"
+#include "server/data/database.h"
 
 namespace lightwell {
 

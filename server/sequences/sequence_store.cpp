@@ -1,7 +1,6 @@
 #include "server/sequences/sequence_store.h"
 
 #include "protocol/codec.h"
-#include "renderer/scene/gltf/load_gltf.h"
 #include "server/convert.h"
 #include "server/operations/log.h"
 #include "server/scenes/digest.h"
@@ -16,7 +15,6 @@ using protocol::SequenceState;
 
 constexpr std::size_t kMostPlans = 16;  // kept ready
 constexpr std::size_t kIdDigits = 32;   // 128 bits of SHA-256
-constexpr const char* kSceneFile = "scene.glb";
 
 std::int64_t unix_seconds() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -27,11 +25,11 @@ using Lock = std::unique_lock<std::mutex>;
 
 }  // namespace
 
-SequenceStore::SequenceStore(const ServeOptions& options, SceneStore& scenes)
+SequenceStore::SequenceStore(const ServeOptions& options, const SceneStore& scenes, const SceneFiles& scene_files)
     : options_(options),
       scenes_(scenes),
+      scene_files_(scene_files),
       folder_(std::filesystem::path(options.data_dir) / "sequences"),
-      scene_files_(std::filesystem::path(options.data_dir) / "scenes"),
       table_(std::filesystem::path(options.data_dir) / "sequences.sqlite") {}
 
 Decoded<SequenceStore::Submitted> SequenceStore::submit(const protocol::SequenceRequest& request,
@@ -40,7 +38,7 @@ Decoded<SequenceStore::Submitted> SequenceStore::submit(const protocol::Sequence
   if (!source) return no_such_scene(request.scene, 422, "/scene");
   auto plan = SequencePlan::make(request, source->scene, options_);
   if (!plan) return plan.problem();
-  const std::string digest = source->digest();
+  const std::string& digest = source->scene->digest();
   const nlohmann::json full = protocol::to_json((*plan)->request());
   Digest identity;
   identity.add(protocol::json_text(full));
@@ -53,7 +51,7 @@ Decoded<SequenceStore::Submitted> SequenceStore::submit(const protocol::Sequence
   if (takes_room && table_.bytes() > options_.limits.max_sequence_bytes)
     return make_problem(503, "the finished sequences take " + std::to_string(table_.bytes()) +
                                  " bytes, more than this server keeps; delete one first");
-  if (const Status kept = keep_scene(digest, *source); !kept) return problem_of(kept.error());
+  if (const Status kept = scene_files_.keep(*source); !kept) return problem_of(kept.error());
   const bool begun = table_.submit(id, (*plan)->request(), full, digest);
   {
     Lock lock(mutex_);
@@ -65,12 +63,6 @@ Decoded<SequenceStore::Submitted> SequenceStore::submit(const protocol::Sequence
   work_.notify_all();
   if (begun) log_event(LogLevel::kInfo, "sequence_submitted", {{"sequence", id}, {"scene", request.scene}});
   return Submitted{table_.find(id)->sequence, begun};
-}
-
-/// An upload lives as long as the server: its sequences may live longer.
-Status SequenceStore::keep_scene(const std::string& digest, const SceneStore::Source& source) {
-  if (!source.glb || std::filesystem::exists(scene_files_.path(digest, kSceneFile))) return Done{};
-  return scene_files_.write(digest, kSceneFile, std::as_bytes(std::span(*source.glb)));
 }
 
 std::optional<protocol::Sequence> SequenceStore::find(const std::string& id) {
@@ -98,7 +90,7 @@ bool SequenceStore::forget(const std::string& id) {
   const auto job = table_.find(id);
   if (!job || !table_.remove(id)) return false;
   folder_.remove(id);
-  if (!table_.uses_scene(job->scene_digest)) scene_files_.remove(job->scene_digest);
+  scene_files_.remove_if_unused(job->scene_digest);
   Lock lock(mutex_);
   plans_.erase(id);
   return true;
@@ -150,27 +142,15 @@ Decoded<std::shared_ptr<const SequencePlan>> SequenceStore::plan(const std::stri
   }
   const auto job = table_.find(id);
   if (!job) return make_problem(404, "there is no such sequence");
-  const auto stage = stage_for(*job);
-  if (!stage) return stage.problem();
+  const auto source = scene_files_.find(job->sequence.request.value("scene", std::string()), job->scene_digest);
+  if (!source) return source.problem();
   const auto request = protocol::parse_sequence_request(protocol::json_text(job->sequence.request));
   if (!request) return request.problem();
-  auto plan = SequencePlan::make(*request, *stage, options_);
+  auto plan = SequencePlan::make(*request, source->scene, options_);
   if (!plan) return plan.problem();
   Lock lock(mutex_);
   if (plans_.size() >= kMostPlans) plans_.clear();
   return plans_[id] = *plan;
-}
-
-/// The scene as it was when the sequence was asked for, or nothing: another would give other pictures.
-Decoded<std::shared_ptr<const StagedScene>> SequenceStore::stage_for(const Job& job) {
-  const std::string name = job.sequence.request.value("scene", std::string());
-  if (const auto source = scenes_.source(name); source && source->digest() == job.scene_digest) return source->scene;
-  if (const auto file = scene_files_.read(job.scene_digest, kSceneFile)) {
-    Result<Scene> scene = load_glb(std::as_bytes(std::span(*file)));
-    if (!scene) return problem_of(scene.error());
-    return stage_upload(std::move(scene).value(), name);
-  }
-  return make_problem(409, "the scene \"" + name + "\" is gone, or is another now");
 }
 
 std::shared_ptr<std::atomic<bool>> SequenceStore::given_up(const std::string& id) {

@@ -7,8 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "server/scenes/scene_store.h"
-#include "server/sequences/frame_files.h"
+#include "server/data/scene_files.h"
 #include "server/sequences/job_table.h"
 #include "server/sequences/sequence_plan.h"
 
@@ -21,7 +20,7 @@ using RendererIdentity = std::string;
 class SequenceStore {
  public:
   /// Keeps everything in `options.data_dir`. Throws std::runtime_error that names what cannot be made.
-  SequenceStore(const ServeOptions& options, SceneStore& scenes);
+  SequenceStore(const ServeOptions& options, const SceneStore& scenes, const SceneFiles& scene_files);
 
   struct Submitted {
     protocol::Sequence sequence;
@@ -36,6 +35,7 @@ class SequenceStore {
   bool cancel(const std::string& id);
   /// Cancels it and forgets its frames.
   bool remove(const std::string& id);
+  bool uses_scene(const std::string& digest) { return table_.uses_scene(digest); }
 
   std::vector<FrameFile> files(const std::string& id) { return table_.files(id); }
   std::vector<FrameFile> files(const std::string& id, std::uint32_t frame) { return table_.files(id, frame); }
@@ -76,16 +76,14 @@ class SequenceStore {
     std::uint64_t next = 0;
   };
 
-  protocol::Decoded<std::shared_ptr<const StagedScene>> stage_for(const Job& job);
-  Status keep_scene(const std::string& digest, const SceneStore::Source& source);
   void tell(const std::string& id);
   void give_up(const std::string& id);
   bool forget(const std::string& id);
 
   const ServeOptions& options_;
-  SceneStore& scenes_;
-  FrameFolder folder_;       // data_dir/sequences/ID
-  FrameFolder scene_files_;  // data_dir/scenes/DIGEST
+  const SceneStore& scenes_;
+  const SceneFiles& scene_files_;
+  FrameFolder folder_;  // data_dir/sequences/ID
   JobTable table_;
 
   std::mutex mutex_;

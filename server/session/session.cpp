@@ -12,6 +12,8 @@ using std::chrono::steady_clock;
 
 namespace {
 
+constexpr auto kSeatReserved = std::chrono::seconds(15);  // a viewer waits for 10 s at most before it tries again
+
 /// The first of those that the client takes which this server has.
 std::string codec_for(const protocol::Hello& hello) {
   const auto chosen = std::find_if(hello.codecs.begin(), hello.codecs.end(), [](const std::string& codec) {
@@ -21,6 +23,10 @@ std::string codec_for(const protocol::Hello& hello) {
 }
 
 }  // namespace
+
+Problem no_such_session() {
+  return make_problem(404, "there is no such session, or it has ended");
+}
 
 Session::Session(std::string id, SessionState state, const SessionSurroundings& surroundings, double idle_s)
     : id_(std::move(id)),
@@ -46,9 +52,29 @@ protocol::Session Session::describe() const {
   return session;
 }
 
-protocol::Decoded<protocol::Session> Session::apply(const protocol::SessionPatch& patch) {
-  if (auto problem = change(patch, nullptr, 0)) return *problem;
-  return describe();
+KeptSession Session::kept_form() const {
+  const std::shared_ptr<const SessionState> state = this->state();
+  KeptSession kept;
+  kept.request.scene = state->scene_name;
+  kept.request.camera = state->camera;
+  kept.request.settings = spec_of(state->settings);
+  kept.request.width = static_cast<std::uint16_t>(state->size_px.x);
+  kept.request.height = static_cast<std::uint16_t>(state->size_px.y);
+  kept.request.playing = state->clock.playing();
+  kept.request.time_s = state->clock.time_s(steady_clock::now());
+  kept.request.idle_s = idle_s_;
+  if (state->edits) kept.edits = *state->edits;
+  kept.scene_digest = state->source.scene->digest();
+  kept.revision = state->revision;
+  std::lock_guard lock(driver_mutex_);
+  kept.driver = driver_ ? driver_->resume_token() : reserved_for_;
+  return kept;
+}
+
+void Session::reserve_seat(const std::string& resume_token) {
+  std::lock_guard lock(driver_mutex_);
+  reserved_for_ = resume_token;
+  reserved_until_ = steady_clock::now() + kSeatReserved;
 }
 
 std::optional<Problem> Session::apply_input(const protocol::Input& input, Viewer& by) {
@@ -65,6 +91,7 @@ std::optional<Problem> Session::change(const protocol::SessionPatch& patch, View
     std::lock_guard lock(state_mutex_);
     state_ = std::make_shared<const SessionState>(std::move(next).value());
   }
+  tell_changed();
   if (patch.scene) end_looks();  // another scene is another place
   audience_.tell_change(members_of(patch), by, seq);
   surroundings_.wake_render_loop();
@@ -171,7 +198,7 @@ protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello
   if (std::find(hello.codecs.begin(), hello.codecs.end(), "jpeg") == hello.codecs.end())
     return make_problem(422, "every client takes jpeg, whatever else it takes", "/codecs");
   if (hello.resume) resume(*hello.resume);
-  const protocol::Role role = seat(hello.role, viewer);
+  const protocol::Role role = seat(hello, viewer);
   if (role == protocol::Role::kDriver) {
     protocol::SessionPatch size;  // the picture fits the driver's window
     const int most = surroundings_.rules.limits.max_size_px;
@@ -190,11 +217,16 @@ protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello
 }
 
 /// The role that a viewer gets: one of a session's viewers drives, the first that asks and may.
-protocol::Role Session::seat(protocol::Role wanted, const Viewer& viewer) {
-  std::lock_guard lock(driver_mutex_);
-  const bool can = wanted == protocol::Role::kDriver && viewer.may_drive() && !driver_;
-  if (!can) return protocol::Role::kViewer;
-  driver_ = &viewer;
+protocol::Role Session::seat(const protocol::Hello& hello, const Viewer& viewer) {
+  {
+    std::lock_guard lock(driver_mutex_);
+    const bool is_reserved = !reserved_for_.empty() && hello.resume != reserved_for_;
+    const bool is_taken = driver_ || (is_reserved && steady_clock::now() < reserved_until_);
+    if (hello.role != protocol::Role::kDriver || !viewer.may_drive() || is_taken) return protocol::Role::kViewer;
+    driver_ = &viewer;
+    reserved_for_.clear();
+  }
+  tell_changed();
   return protocol::Role::kDriver;
 }
 
@@ -239,6 +271,7 @@ void Session::leave(Viewer& viewer) {
     std::lock_guard lock(driver_mutex_);
     if (driver_ == &viewer) driver_ = nullptr;
   }
+  tell_changed();
   audience_.leave(viewer);
   touch();
 }

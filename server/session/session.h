@@ -9,12 +9,18 @@
 
 #include "server/operations/metrics.h"
 #include "server/render/render_loop.h"
+#include "server/session/kept_session.h"
 #include "server/session/own_look.h"
 #include "server/session/session_state.h"
 #include "server/stream/audience.h"
 #include "server/stream/director.h"
 
 namespace lightwell {
+
+class Session;
+
+/// There is none of this id: 404.
+protocol::Problem no_such_session();
 
 /// What all sessions of a server share.
 struct SessionSurroundings {
@@ -25,6 +31,8 @@ struct SessionSurroundings {
   std::function<std::vector<std::string>()> methods;
   /// Has pictures made of what is directed, in the time of an account.
   std::function<void(std::shared_ptr<DirectedSession>, std::shared_ptr<RenderAccount>)> direct;
+  /// Something has changed that is kept of a session.
+  std::function<void(std::shared_ptr<const Session>)> changed;
 };
 
 /// Thread-safe. Readers get a state that never changes; writers make the next one, one at a time.
@@ -38,8 +46,12 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   void begin() { surroundings_.direct(shared_from_this(), account_); }
   std::size_t viewers() const { return audience_.size(); }
   protocol::Session describe() const;
+  /// What is kept of it; its `unix_ms` is the caller's to set.
+  KeptSession kept_form() const;
+  /// For a while only a stream that is resumed with this token may drive. Called before the session has viewers.
+  void reserve_seat(const std::string& resume_token);
   /// All of `patch` or nothing.
-  protocol::Decoded<protocol::Session> apply(const protocol::SessionPatch& patch);
+  std::optional<protocol::Problem> apply(const protocol::SessionPatch& patch) { return change(patch, nullptr, 0); }
 
   /// A new stream's end, which belongs to the audience until its connection closes. `may_drive`: whether its client's
   /// token lets it be a driver. Problem: 503 if there are too many.
@@ -79,7 +91,8 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
  private:
   std::optional<protocol::Problem> change(const protocol::SessionPatch& patch, Viewer* by, std::uint32_t seq);
   protocol::Welcome welcome(const SessionState& state) const;
-  protocol::Role seat(protocol::Role wanted, const Viewer& viewer);
+  protocol::Role seat(const protocol::Hello& hello, const Viewer& viewer);
+  void tell_changed() { surroundings_.changed(shared_from_this()); }
   void resume(const std::string& token);
   protocol::Decoded<std::shared_ptr<OwnLook>> own_look_of(Viewer& viewer);
   bool end_look(Viewer& viewer);
@@ -100,8 +113,10 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   std::shared_ptr<const SessionState> state_;
   SteadyTime touched_;
 
-  std::mutex driver_mutex_;
+  mutable std::mutex driver_mutex_;
   const Viewer* driver_ = nullptr;  // who drives; it leaves before it goes
+  std::string reserved_for_;        // a resume token; empty: nobody
+  SteadyTime reserved_until_{};
 };
 
 }  // namespace lightwell

@@ -1,6 +1,7 @@
 #include "server/session/session_state.h"
 
 #include "server/convert.h"
+#include "server/session/edit_log.h"
 
 namespace lightwell {
 namespace {
@@ -8,6 +9,13 @@ namespace {
 using protocol::Decoded;
 using protocol::Problem;
 using protocol::SessionPatch;
+
+void open_scene(SessionState& state, const std::string& name, SceneStore::Source source) {
+  state.scene_name = name;
+  state.stage = source.scene;
+  state.source = std::move(source);
+  state.edits = std::make_shared<const protocol::Edits>(protocol::Edits::array());
+}
 
 /// Applies the members of a patch to a copy, one after another, until one is refused.
 class Change {
@@ -31,9 +39,9 @@ class Change {
 
   bool change_scene() {
     if (!patch_.scene) return true;
-    state_.stage = rules_.scenes.find(*patch_.scene);
-    if (!state_.stage) return refuse(no_such_scene(*patch_.scene, 422, "/scene"));
-    state_.scene_name = *patch_.scene;
+    auto source = rules_.scenes.source(*patch_.scene);
+    if (!source) return refuse(no_such_scene(*patch_.scene, 422, "/scene"));
+    open_scene(state_, *patch_.scene, std::move(*source));
     state_.camera = protocol::DefaultCamera();
     state_.clock.set_time(0.0, now_);
     return true;
@@ -60,6 +68,7 @@ class Change {
     Decoded<Scene> scene = edited(*state_.stage->scene(), *patch_.edits, rules_.limits);
     if (!scene) return refuse(scene.problem());
     state_.stage = std::make_shared<const StagedScene>(std::move(scene).value());
+    if (state_.edits) state_.edits = with_edits(*state_.edits, *patch_.edits);
     return true;
   }
 
@@ -78,6 +87,19 @@ class Change {
   SteadyTime now_;
   Problem problem_;
 };
+
+/// All members of a request as a change of everything.
+SessionPatch patch_of(const protocol::SessionRequest& request) {
+  SessionPatch everything;
+  everything.scene = request.scene;
+  everything.camera = request.camera;
+  everything.settings = request.settings;
+  everything.width = request.width;
+  everything.height = request.height;
+  everything.playing = request.playing;
+  everything.time_s = request.time_s;
+  return everything;
+}
 
 }  // namespace
 
@@ -101,14 +123,18 @@ Decoded<SessionState> make_session_state(const protocol::SessionRequest& request
                                          SteadyTime now) {
   SessionState state;
   state.settings = rules.default_settings;
-  SessionPatch everything;
-  everything.scene = request.scene;
-  everything.camera = request.camera;
-  everything.settings = request.settings;
-  everything.width = request.width;
-  everything.height = request.height;
-  everything.playing = request.playing;
-  everything.time_s = request.time_s;
+  if (auto problem = Change(state, patch_of(request), rules, now).apply()) return *problem;
+  return state;
+}
+
+Decoded<SessionState> make_session_state(const protocol::SessionRequest& request, SceneStore::Source source,
+                                         const protocol::Edits& edits, const SessionRules& rules, SteadyTime now) {
+  SessionState state;
+  state.settings = rules.default_settings;
+  open_scene(state, request.scene, std::move(source));
+  SessionPatch everything = patch_of(request);
+  everything.scene.reset();
+  everything.edits = edits;
   if (auto problem = Change(state, everything, rules, now).apply()) return *problem;
   return state;
 }

@@ -28,7 +28,9 @@ class Clock {
 
 struct SessionState {
   std::string scene_name;
-  std::shared_ptr<const StagedScene> stage;  // the session's own once it has been edited
+  SceneStore::Source source;                     // the scene as it was chosen
+  std::shared_ptr<const protocol::Edits> edits;  // since then; null: more than one may be told of
+  std::shared_ptr<const StagedScene> stage;      // with them: the session's own once it has been edited
   protocol::CameraSpec camera;
   Settings settings;
   glm::ivec2 size_px{0};
@@ -61,6 +63,10 @@ struct SessionRules {
 };
 
 protocol::Decoded<SessionState> make_session_state(const protocol::SessionRequest& request, const SessionRules& rules,
+                                                   SteadyTime now);
+/// The same over a scene that may be no longer in the store, with edits.
+protocol::Decoded<SessionState> make_session_state(const protocol::SessionRequest& request, SceneStore::Source source,
+                                                   const protocol::Edits& edits, const SessionRules& rules,
                                                    SteadyTime now);
 
 /// `state` with all of `patch`, its revision one higher; or the first thing wrong.

@@ -14,6 +14,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from service_test import ROOT, Server, free_port, small  # noqa: E402  (takes the program's path from the arguments)
+from web_socket import Viewer  # noqa: E402
 
 HAPROXY = shutil.which("haproxy") or "/usr/sbin/haproxy"
 
@@ -88,18 +89,32 @@ class BalancerTest(unittest.TestCase):
         self.assertEqual(len(homes), 1)
         return homes[0]
 
-    def test_a_killed_server_takes_no_other_session_and_no_frame_with_it(self):
+    def session(self, session):
+        """What the balancer's choice of server says of it; none if it does not have it."""
+        status, _, body = self.ask("GET", f"/v1/sessions/{session}")
+        return json.loads(body) if status == 200 else None
+
+    def edit_light(self, intensity):
+        return [{"op": "replace", "path": "/extensions/KHR_lights_punctual/lights/0/intensity", "value": intensity}]
+
+    def test_a_killed_server_takes_no_session_and_no_frame_with_it(self):
         sessions = self.begin_sessions(12)
         homes = {session: self.home_of(session) for session in sessions}
         self.assertEqual(len(set(homes.values())), 3, "the sessions are not spread")
         for session, number in sessions.items():  # sticky: each is found again, whoever is asked in between
             self.assertEqual(json.loads(self.ask("GET", f"/v1/sessions/{session}")[2])["time_s"], number)
+        victim = self.servers[1]
+        on_victim = [session for session, home in homes.items() if home is victim]
+        viewers = {session: Viewer(self.proxy_port, session) for session in on_victim}
+        for number, viewer in enumerate(viewers.values()):
+            self.assertEqual(viewer.welcome["role"], "driver")
+            viewer.socket.send({"type": "input", "seq": 1, "edits": self.edit_light(100 + number)})
+            self.assertTrue(viewer.frame_of_input(1))
 
         requests = [small(last_frame=24, settings={"samples": 4, "indirect_size": 16, "seed": seed}) for seed in range(4)]
         sequences = [json.loads(self.ask("POST", "/v1/sequences", request)[2])["id"] for request in requests]
         while sum(json.loads(self.ask("GET", f"/v1/sequences/{each}")[2])["frames_done"] for each in sequences) < 20:
             time.sleep(0.05)
-        victim = self.servers[1]
         victim.stop(signal.SIGKILL)
 
         for session, number in sessions.items():
@@ -113,11 +128,20 @@ class BalancerTest(unittest.TestCase):
             self.assertEqual(state["frames_done"], 25)
             status, _, archive = self.ask("GET", f"/v1/sequences/{each}/archive")
             self.assertEqual((status, archive.count(b"PK\x01\x02")), (200, 25))
-        # A session that was on the killed server is gone, and said to be: its client makes another like it.
-        self.wait_until(lambda: self.servers_up() == 2)
-        lost = next(session for session, home in homes.items() if home is victim)
-        self.wait_until(lambda: self.ask("GET", f"/v1/sessions/{lost}")[0] == 404)
-        self.assertEqual(self.ask("POST", "/v1/sessions", small())[0], 201)
+        # The sessions of the killed server go on at the others, as their viewers left them.
+        for number, (session, before) in enumerate(viewers.items()):
+            self.assertIsNone(before.next(lambda message: False))  # its stream has ended
+            before.close()
+            self.wait_until(lambda: self.session(session))
+            self.assertEqual(self.session(session)["time_s"], sessions[session])
+            self.assertIsNot(self.home_of(session), victim)
+            stranger, same = Viewer(self.proxy_port, session), Viewer(self.proxy_port, session, before.welcome["resume"])
+            self.assertEqual((stranger.welcome["role"], same.welcome["role"]), ("viewer", "driver"))
+            self.assertEqual(same.welcome["lights"][0]["intensity"], 100 + number)
+            same.socket.send({"type": "input", "seq": 1, "edits": self.edit_light(7)})
+            self.assertTrue(same.frame_of_input(1))
+            stranger.close()
+            same.close()
 
     def test_a_server_is_drained_without_a_broken_request(self):
         failures, answered = [], []

@@ -135,6 +135,17 @@ Answer ask_for_many_films(Asked& asked, const std::string& target) {
   return answer;
 }
 
+void ask_another_server(Answers& answers) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  Asked first(options), second(options);
+  const std::string session = first.until_ready().session();
+  answers["elsewhere"] = second.until_ready().ask("GET", "/v1/sessions/" + session);
+  EXPECT_TRUE(first.server.drain(test::kPatience));
+  answers["just_came"] = second.raw(Asked::handshake(session));
+}
+
 void ask_for_sequences(Answers& answers) {
   answers["no_folder"] = Asked().until_ready().ask("GET", "/v1/sequences");
   const DataFolder folder;
@@ -294,8 +305,8 @@ std::map<std::string, json> documented() {
 TEST(Refusals, AreThoseOfTheDocument) {
   Answers answers;
   for (const auto& ask_for :
-       {ask_what_is_malformed, ask_what_means_nothing, ask_for_sequences, ask_for_films, ask_for_too_much,
-        ask_for_large_textures, ask_too_often, ask_without_leave, ask_at_the_wrong_time})
+       {ask_what_is_malformed, ask_what_means_nothing, ask_another_server, ask_for_sequences, ask_for_films,
+        ask_for_too_much, ask_for_large_textures, ask_too_often, ask_without_leave, ask_at_the_wrong_time})
     ask_for(answers);
   auto examples = documented();
   // A build has an encoder or has none: the one refuses the fifth film, the other each.

@@ -5,7 +5,6 @@ import pathlib
 import signal
 import socket
 import ssl
-import struct
 import subprocess
 import sys
 import tempfile
@@ -13,6 +12,9 @@ import time
 import unittest
 import urllib.error
 import urllib.request
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from web_socket import WebSocket  # noqa: E402
 
 PROGRAM = sys.argv.pop(1)
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -131,22 +133,12 @@ class TlsTest(unittest.TestCase):
 
         # A WebSocket goes the same way: the handshake is answered and a hello is welcomed.
         session = json.loads(self.server.ask("POST", "/v1/sessions", small(), bearer)[2])["id"]
-        with socket.create_connection(("127.0.0.1", self.server.port)) as line:
-            tls = self.server.context.wrap_socket(line, server_hostname="localhost")
-            tls.sendall((f"GET /v1/sessions/{session}/stream HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\n"
-                         "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-                         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-                         f"Sec-WebSocket-Protocol: lightwell.v1, bearer.{TOKEN}\r\n\r\n").encode())
-            stream = tls.makefile("rb")
-            self.assertIn(b" 101 ", stream.readline())
-            while stream.readline().strip():
-                pass
-            hello = json.dumps({"type": "hello", "codecs": ["jpeg"], "width": 48, "height": 32}).encode()
-            tls.sendall(bytes([0x81, 0x80 | len(hello)]) + bytes(4) + hello)
-            first, second = stream.read(2)
-            length = struct.unpack(">H", stream.read(2))[0] if second == 126 else second
-            self.assertEqual(first, 0x81)
-            self.assertEqual(json.loads(stream.read(length))["type"], "welcome")
+        stream = WebSocket(self.server.port, f"/v1/sessions/{session}/stream", f"lightwell.v1, bearer.{TOKEN}",
+                           self.server.context)
+        self.assertEqual(stream.status, 101)
+        stream.send({"type": "hello", "codecs": ["jpeg"], "width": 48, "height": 32})
+        self.assertEqual(stream.receive()["type"], "welcome")
+        stream.close()
 
 
 class SignalTest(unittest.TestCase):

@@ -1,4 +1,4 @@
-#include "server/sequences/database.h"
+#include "server/data/database.h"
 
 #include <sqlite3.h>
 

@@ -1,4 +1,4 @@
-#include "server/sequences/frame_files.h"
+#include "server/data/frame_files.h"
 
 #include <fcntl.h>
 #include <unistd.h>
