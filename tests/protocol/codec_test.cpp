@@ -49,6 +49,7 @@ TEST(FrameQuery, NamesWhatIsWrong) {
 
 TEST(Serialize, NumbersThatAreNotFiniteTravelAsZero) {
   Stats stats;
+  stats.method = "thesis";
   stats.fps = std::nan("");
   stats.exposure_ev = -std::numeric_limits<double>::infinity();
   const Decoded<ServerMessage> read = parse_server_message(serialize(stats));
