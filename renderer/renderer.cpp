@@ -101,6 +101,7 @@ std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
       coverage.cutoff = material.alpha_cutoff;
       coverage.factor = material.base_color_factor.a;
       coverage.use = material.base_color_texture;
+      coverage.double_sided = material.double_sided;
       if (coverage.mode != AlphaMode::kOpaque && coverage.use.texture >= 0) {
         const Texture& texture = scene.textures[static_cast<std::size_t>(coverage.use.texture)];
         if (texture.image >= 0) coverage.image = scene.images[static_cast<std::size_t>(texture.image)];
@@ -139,6 +140,12 @@ std::unique_ptr<Tracer> make_tracer(const RendererOptions& options, bool softwar
   return native ? options.make_native_tracer() : make_compute_tracer();
 }
 
+// A GPU's rasteriser is quicker than any processor's rays.
+ViewTracing choose_view_tracing(SeenBy seen_by, Tracer& tracer, bool software) {
+  if (seen_by == SeenBy::kRasterizer || (seen_by == SeenBy::kQuicker && !software)) return {};
+  return {tracer.views(), seen_by == SeenBy::kRays};
+}
+
 }  // namespace
 
 struct Renderer::State {
@@ -148,13 +155,14 @@ struct Renderer::State {
         tracer(make_tracer(options, context->device().software)),
         triangle_groups([options, software = context->device().software] { return make_tracer(options, software); }),
         buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
+        view_tracing(choose_view_tracing(options.seen_by, *tracer, context->device().software)),
         camera("camera", sizeof(CameraBlock)) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
   }
 
-  void bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px);
+  CameraBlock bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px);
   void read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const;
 
   std::unique_ptr<gl::Context> context;
@@ -163,13 +171,14 @@ struct Renderer::State {
   std::unique_ptr<Tracer> tracer;
   TriangleGroups triangle_groups;
   gl::BufferUse buffers;
+  ViewTracing view_tracing;
   DeviceScene device_scene;
   gl::Buffer camera;
   EnvironmentBlock environment;
   BrdfTable brdf_table{shaders};
 };
 
-void Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px) {
+CameraBlock Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px) {
   const CameraBlock block = make_camera_block(request.camera, request.size_px, jitter_px);
   camera.upload(std::span<const CameraBlock>(&block, 1));
   camera.bind_uniform(BINDING_CAMERA);
@@ -177,6 +186,7 @@ void Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request
   environment.bind();
   brdf_table.bind();
   device_scene.bind();
+  return block;
 }
 
 void Renderer::State::read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const {
@@ -241,7 +251,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const glm::vec2 jitter_px = method == Method::kReference
                                     ? glm::vec2(0.0f)
                                     : pixel_jitter(over_time ? view.realtime().frame_number() : view.accumulated);
-    state_->bind_frame(scene, request, jitter_px);
+    const CameraBlock camera = state_->bind_frame(scene, request, jitter_px);
     state_->timer.mark("scene");
 
     FrameContext context{state_->device_scene,
@@ -253,7 +263,8 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
                          *state_->tracer,
                          state_->triangle_groups,
                          trace_scene,
-                         state_->timer};
+                         state_->timer,
+                         {camera, state_->view_tracing}};
     const Picture& made = method == Method::kReference ? view.reference().render(context, scene)
                           : method == Method::kRealtime
                               ? view.realtime().render(context, scene, request.camera, jitter_px)

@@ -56,6 +56,11 @@ enum class ToneMap { kNeutral, kLinear };
 /// one of the two alone. All have the same mean.
 enum class LightStrategy { kBoth, kLights, kRays };
 
+/// How what cameras and shadow maps see is found. On a software device with the native tracer rays are quicker where
+/// triangles are many for the pixels; all else is rasterised. The other two, for comparing them: always the one, and
+/// the other wherever it can be.
+enum class SeenBy { kQuicker, kRasterizer, kRays };
+
 /// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` and `realtime`; for the latter 3 and
 /// more are the same, since its radiance cache carries all further bounces.
 constexpr int kUnlimitedBounces = 1 << 20;
@@ -166,6 +171,7 @@ struct RendererOptions {
   std::string tracer;  // "" (compute on a GPU, else the native one if given), "embree", "compute" or "brute-force"
   /// Makes the native tracer; the core does not link it. Empty: there is none.
   std::function<std::unique_ptr<Tracer>()> make_native_tracer;
+  SeenBy seen_by = SeenBy::kQuicker;
   /// Compiles the methods' shaders at the start, so that no frame waits for them; else each when it is first used.
   bool compile_ahead = true;
 };

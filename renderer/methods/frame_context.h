@@ -3,6 +3,7 @@
 
 #include "renderer/gl/stage_timer.h"
 #include "renderer/passes/device_scene.h"
+#include "renderer/passes/view_tracing.h"
 #include "renderer/renderer.h"
 #include "renderer/tracing/tracer.h"
 #include "renderer/tracing/triangle_groups.h"
@@ -20,6 +21,7 @@ struct FrameContext {
   TriangleGroups& triangle_groups;  // to be updated by whom needs them
   const TraceScene& trace_scene;    // what the tracer was updated with
   gl::StageTimer& timer;
+  CameraView camera;       // its block is bound
   std::uint64_t rays = 0;  // traced in this frame
 };
 

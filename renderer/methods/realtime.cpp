@@ -59,7 +59,7 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   motion_.follow(frame.pose);
   g_buffer_pass_.resize(frame.size_px);
   const GBuffer& g_buffer =
-      g_buffer_pass_.run(frame.scene, frame.settings.seed + frame_number_, &motion_,
+      g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + frame_number_, &motion_,
                          frame.scene.has_clear() ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
   frame.timer.mark("g-buffer");
   punctual_light_pass_.resize(frame.size_px);

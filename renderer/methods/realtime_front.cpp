@@ -15,8 +15,8 @@ const Picture& RealtimeFront::run(FrameContext& frame, const Picture& behind, co
   layers_pass_.resize(frame.size_px);
   punctual_light_pass_.resize(frame.size_px);
   const gl::Texture& layers = layers_pass_.run(frame.scene, sampling.g_buffer);
-  const GBuffer& g_buffer =
-      g_buffer_pass_.run(frame.scene, frame.settings.seed + sampling.frame_number, nullptr, GBufferLayer::kClearAlone);
+  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + sampling.frame_number,
+                                               nullptr, GBufferLayer::kClearAlone);
   frame.timer.mark("g-buffer");
   const TracedLight& direct = punctual_light_pass_.run(frame, g_buffer, sampling.lights, sampling.frame_number);
   compose_pass_.resize(g_buffer.depth);

@@ -67,10 +67,10 @@ const Picture& ThesisMethod::render_layers(FrameContext& frame) {
   const IndirectMapGrid grid = make_grid(frame);
   resize(frame, grid);
   const bool clear = frame.scene.has_clear();
-  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number, nullptr,
-                                               clear ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
+  const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + frame.frame_number,
+                                               nullptr, clear ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
   frame.timer.mark("g-buffer");
-  const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose);
+  const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose, frame.camera.tracing);
   frame.timer.mark("shadow maps");
   const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
   const bool layered = clear && shows_clear_surfaces(frame.settings.view);
@@ -86,8 +86,8 @@ const Picture& ThesisMethod::clear_surfaces_over(const Picture& behind, FrameCon
   clear_layers_pass_.resize(frame.size_px);
   clear_g_buffer_pass_.resize(frame.size_px);
   const gl::Texture& layers = clear_layers_pass_.run(frame.scene, g_buffer);
-  const GBuffer& front = clear_g_buffer_pass_.run(frame.scene, frame.settings.seed + frame.frame_number, nullptr,
-                                                  GBufferLayer::kClearAlone);
+  const GBuffer& front = clear_g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + frame.frame_number,
+                                                  nullptr, GBufferLayer::kClearAlone);
   frame.timer.mark("g-buffer");
   const IndirectMap& indirect = reflected_by_clear(frame, front, g_buffer, shadows, grid);
   clear_compose_pass_.resize(front.depth);

@@ -91,6 +91,7 @@ DeviceScene::DeviceScene()
     : instances_("instances", 0),
       materials_("materials", 0),
       draw_commands_("draws", 0),
+      position_texels_("positions", GL_RGB32F),
       vertex_texels_("vertices", GL_RGBA32UI),
       triangle_texels_("triangles", GL_RGBA32UI),
       instance_texels_("instances", GL_RGBA32UI),
@@ -143,6 +144,7 @@ void DeviceScene::set_defines(const Scene& scene, const Pose& pose, bool multipl
 }
 
 void DeviceScene::attach_buffers() {
+  position_texels_.attach(geometries_.front()->positions());
   vertex_texels_.attach(geometries_.front()->vertices());
   triangle_texels_.attach(geometries_.front()->triangles());
   instance_texels_.attach(instances_);
@@ -298,6 +300,7 @@ void DeviceScene::feed_instances_before(const gl::Buffer& instances) const {
 
 void DeviceScene::bind() const {
   textures_.front()->bind();
+  position_texels_.bind(UNIT_POSITIONS);
   vertex_texels_.bind(UNIT_VERTICES);
   triangle_texels_.bind(UNIT_TRIANGLES);
   instance_texels_.bind(UNIT_INSTANCES);

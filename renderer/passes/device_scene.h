@@ -110,7 +110,7 @@ class DeviceScene {
   std::list<std::unique_ptr<DeviceGeometry>> geometries_;  // most recently used first
   std::list<std::unique_ptr<SceneTextures>> textures_;
   gl::Buffer instances_, materials_, draw_commands_;
-  gl::BufferTexture vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
+  gl::BufferTexture position_texels_, vertex_texels_, triangle_texels_, instance_texels_, material_texels_;
   GLuint vertex_array_ = 0;
   Draws draws_[3];
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false, is_lambert_ = false;

@@ -1,6 +1,7 @@
 #include "renderer/passes/g_buffer.h"
 
 #include "renderer/passes/bindings.glsl"
+#include "renderer/tracing/tracer.h"
 
 namespace lightwell {
 
@@ -31,6 +32,9 @@ void GBuffer::bind() const {
 GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
     : variants_([&shaders](const gl::Defines& defines) {
         return shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", defines);
+      }),
+      traced_variants_([&shaders](const gl::Defines& defines) {
+        return shaders.raster("passes/full_screen_camera.vert", "passes/g_buffer.frag", defines);
       }) {}
 
 void GBufferPass::resize(glm::ivec2 size_px) {
@@ -62,8 +66,8 @@ const gl::Framebuffer& GBufferPass::framebuffer_of(bool lobes, bool motion) {
   return framebuffer;
 }
 
-const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion,
-                                GBufferLayer layer) {
+const GBuffer& GBufferPass::run(const DeviceScene& scene, const CameraView& camera, std::uint32_t seed,
+                                const InstanceMotion* motion, GBufferLayer layer) {
   buffer_.has_motion = motion && motion->moving();
   gl::Defines defines = gl::joined(gl::joined(scene.texture_defines(), scene.lobe_defines()), layer_defines(layer));
   if (motion) defines.emplace_back("FILTER_SPECULAR 1");
@@ -73,16 +77,26 @@ const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, co
     defines.emplace_back("MOTION 1");
     if (motion->deforming()) defines.emplace_back("DEFORMED_MOTION 1");
   }
+  ViewTracer* tracer = layer == GBufferLayer::kAll ? camera.tracing.for_view(scene, buffer_.size_px()) : nullptr;
+  if (tracer) find_hits(*tracer, camera.block);
   const gl::Framebuffer& framebuffer = framebuffer_of(scene.has_lobes(), buffer_.has_motion);
   framebuffer.bind();
   const GLfloat nothing_there = 0.0f;  // where it stays, nobody looks at the other textures
   glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &nothing_there);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  if (tracer)
+    draw_hits(std::move(defines));
+  else
+    rasterize(scene, defines, seed);
+  glDisable(GL_DEPTH_TEST);
+  return buffer_;
+}
 
+void GBufferPass::rasterize(const DeviceScene& scene, const gl::Defines& defines, std::uint32_t seed) {
   Variant& variant = variants_.with(defines);
   variant.program->use();
   variant.frame_seed = seed;
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
   glCullFace(GL_BACK);
   scene.draw([](DrawGroup group) {
     if (group == DrawGroup::kDoubleSided)
@@ -93,8 +107,22 @@ const GBuffer& GBufferPass::run(const DeviceScene& scene, std::uint32_t seed, co
     glFrontFace(group == DrawGroup::kCulledMirrored ? GL_CCW : GL_CW);
   });
   glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
-  return buffer_;
+}
+
+void GBufferPass::find_hits(ViewTracer& tracer, const CameraBlock& camera) {
+  const glm::ivec2 size_px = buffer_.size_px();
+  const std::uint64_t bytes =
+      static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y) * sizeof(Hit);
+  constexpr std::uint64_t kTexelBytes = 16;  // the last hit's second texel may begin behind it
+  if (hits_.reserve(bytes + kTexelBytes)) hit_texels_.attach(hits_);
+  tracer.camera_hits(camera_rays(camera), hits_);
+}
+
+void GBufferPass::draw_hits(gl::Defines defines) {
+  defines.emplace_back("TRACED 1");
+  hit_texels_.bind(UNIT_HITS);
+  traced_variants_.with(defines)->use();
+  full_screen_.draw_full_screen();
 }
 
 }  // namespace lightwell

@@ -1,5 +1,8 @@
 // BEHIND_CLEAR: without clear surfaces, as if they were not there. CLEAR_ALONE: these alone, where they are before the rest;
-// what they let through is in the other layer.
+// what they let through is in the other layer. TRACED: of the nearest hits of the pixels' rays, not of the rasteriser.
+#ifdef TRACED
+#define FLAT_CAMERA
+#endif
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
@@ -13,15 +16,11 @@
 #ifdef HAS_LOBES
 #include "shaders/lobes.glsl"
 #endif
-
-in vec3 world_position;
-in vec3 world_normal;
-#ifdef HAS_TEXTURES
-in vec4 world_tangent;
-in vec4 texture_uv;
-in vec4 vertex_color_factor;
+#ifdef TRACED
+#include "shaders/ray.glsl"
+#include "shaders/fetch_hit.glsl"
 #endif
-flat in uint material_index;
+#include "shaders/seen_point.glsl"
 
 layout(location = 0) out uvec4 out_surface;
 layout(location = 1) out uvec2 out_material;
@@ -31,7 +30,6 @@ layout(location = 3) out uvec4 out_lobes;
 #endif
 
 #ifdef MOTION
-in vec3 displacement_ws;
 #ifdef HAS_LOBES
 layout(location = 4) out vec4 out_motion;
 #else
@@ -48,8 +46,7 @@ layout(binding = UNIT_G_DEPTH) uniform sampler2D depth_behind;
 #ifdef FILTER_SPECULAR
 // A roughness that holds the normals of the whole pixel, so that a glint smaller than a pixel is not as bright as if it
 // filled it (Tokuyoshi and Kaplanyan 2019).
-float filtered_roughness(float roughness, vec3 normal_ws) {
-  const vec3 across = dFdx(normal_ws), down = dFdy(normal_ws);
+float filtered_roughness(float roughness, vec3 across, vec3 down) {
   const float kPixelVariance = 0.25, kMost = 0.18;
   const float spread = min(2.0 * kPixelVariance * (dot(across, across) + dot(down, down)), kMost);
   const float alpha = roughness * roughness;
@@ -61,7 +58,9 @@ float filtered_roughness(float roughness, vec3 normal_ws) {
 float coverage_threshold() { return unit_interval(hash(uvec3(gl_FragCoord.xy, frame_seed))); }
 
 void main() {
-  const Material material = fetch_material(material_index);
+  const SeenPoint seen = seen_point();
+  const Attributes at = seen.at;
+  const Material material = fetch_material(seen.material);
 #ifdef BEHIND_CLEAR
   if ((material.flags & kMaterialClear) != 0u) discard;
 #endif
@@ -69,31 +68,14 @@ void main() {
   if ((material.flags & kMaterialClear) == 0u) discard;
   if (gl_FragCoord.z <= texelFetch(depth_behind, ivec2(gl_FragCoord.xy), 0).r) discard;
 #endif
-  Attributes at;
-  at.normal_ws = normalize(world_normal);
-  at.tangent_ws = vec3(0.0);
-  at.handedness = 1.0;
-  at.uv0 = vec2(0.0);
-  at.uv1 = vec2(0.0);
-  at.color = vec4(1.0);
-  vec2 footprint = vec2(0.0);
-#ifdef HAS_TEXTURES
-  at.tangent_ws = world_tangent.xyz;
-  at.handedness = world_tangent.w;
-  at.uv0 = texture_uv.xy;
-  at.uv1 = texture_uv.zw;
-  at.color = vertex_color_factor;
-  const vec4 across = dFdx(texture_uv), down = dFdy(texture_uv);
-  footprint = vec2(max(length(across.xy), length(down.xy)), max(length(across.zw), length(down.zw)));
-#endif
-  Surface surface = shade_surface(material, at, footprint);
+  Surface surface = shade_surface(material, at, seen.footprint);
   if ((material.flags & kMaterialAlphaMask) != 0u && surface.base_color.a < material.alpha_cutoff) discard;
   if ((material.flags & kMaterialAlphaBlend) != 0u) {
     if (surface.base_color.a <= coverage_threshold()) discard;
   }
 
-  const vec3 to_camera = direction_to_camera(world_position);
-  vec3 geometric_normal = cross(dFdx(world_position), dFdy(world_position));
+  const vec3 to_camera = direction_to_camera(seen.position_ws);
+  vec3 geometric_normal = seen.geometric_normal_ws;
   geometric_normal = dot(geometric_normal, geometric_normal) > 0.0 ? normalize(geometric_normal) : at.normal_ws;
   if (dot(geometric_normal, to_camera) < 0.0) geometric_normal = -geometric_normal;
   // A double-sided surface seen from behind shows its normal turned around; so does one whose winding disagrees.
@@ -104,12 +86,12 @@ void main() {
   const vec3 base_color = unlit ? vec3(0.0) : clamp(surface.base_color.rgb, 0.0, 1.0);
   out_surface = pack_g_surface(surface.normal_ws, geometric_normal, base_color, clamp(surface.metallic, 0.0, 1.0));
 #ifdef FILTER_SPECULAR
-  surface.roughness = filtered_roughness(surface.roughness, at.normal_ws);
+  surface.roughness = filtered_roughness(surface.roughness, seen.normal_across, seen.normal_down);
 #endif
   const uint roughness = uint(clamp(surface.roughness, 0.0, 1.0) * 65535.0 + 0.5);
-  out_material = uvec2(material_index | (roughness << 16), packUnorm2x16(vec2(material.f0_dielectric, material.specular_factor)));
+  out_material = uvec2(seen.material | (roughness << 16), packUnorm2x16(vec2(material.f0_dielectric, material.specular_factor)));
 #ifdef HAS_LOBES
-  Lobes lobes = shade_lobes(material_index, material, at, footprint);
+  Lobes lobes = shade_lobes(seen.material, material, at, seen.footprint);
   const bool behind = dot(at.normal_ws, geometric_normal) < 0.0;
   if (behind) lobes.clearcoat_normal_ws = -lobes.clearcoat_normal_ws;
   lobes.clearcoat_normal_ws = visible_shading_normal(lobes.clearcoat_normal_ws, geometric_normal, to_camera);
@@ -122,7 +104,10 @@ void main() {
   surface.emission *= 1.0 - lobes.clearcoat * mix(kClearcoatF0, 1.0, schlick_weight(dot(lobes.clearcoat_normal_ws, to_camera)));
 #endif
 #ifdef MOTION
-  out_motion = vec4(displacement_ws, 0.0);
+  out_motion = vec4(seen.displacement_ws, 0.0);
+#endif
+#ifdef TRACED
+  gl_FragDepth = depth_of_view(seen.view_depth_m);
 #endif
   const float kLargestHalf = 65504.0;
   out_emission = vec4(min(unlit ? surface.base_color.rgb : surface.emission, kLargestHalf), unlit ? 1.0 : 0.0);

@@ -1,10 +1,11 @@
-// What the camera sees, rasterised: the first stage of a frame.
+// What the camera sees, rasterised or traced: the first stage of a frame.
 #pragma once
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/device_scene.h"
 #include "renderer/passes/instance_motion.h"
+#include "renderer/passes/view_tracing.h"
 
 namespace lightwell {
 
@@ -31,11 +32,11 @@ class GBufferPass {
   explicit GBufferPass(gl::ShaderLibrary& shaders);
   void resize(glm::ivec2 size_px);
   const GBuffer& g_buffer() const { return buffer_; }
-  /// The camera block must be bound. `seed` decides the coverage of blended surfaces. With `motion` the displacements
-  /// are drawn as well when something moves, and roughness holds the normals of the whole pixel. For kClearAlone the
-  /// depth of the layer behind must be bound as a GBuffer's.
-  const GBuffer& run(const DeviceScene& scene, std::uint32_t seed, const InstanceMotion* motion = nullptr,
-                     GBufferLayer layer = GBufferLayer::kAll);
+  /// The camera block, which is `camera`, must be bound. `seed` decides the coverage of blended surfaces. With `motion`
+  /// the displacements are drawn as well when something moves, and roughness holds the normals of the whole pixel. For
+  /// kClearAlone the depth of the layer behind must be bound as a GBuffer's.
+  const GBuffer& run(const DeviceScene& scene, const CameraView& camera, std::uint32_t seed,
+                     const InstanceMotion* motion = nullptr, GBufferLayer layer = GBufferLayer::kAll);
 
  private:
   struct Variant {
@@ -44,7 +45,14 @@ class GBufferPass {
     gl::Uniform<std::uint32_t> frame_seed;
   };
   const gl::Framebuffer& framebuffer_of(bool lobes, bool motion);
+  void rasterize(const DeviceScene& scene, const gl::Defines& defines, std::uint32_t seed);
+  void find_hits(ViewTracer& tracer, const CameraBlock& camera);
+  void draw_hits(gl::Defines defines);
   gl::Variants<Variant> variants_;
+  gl::Variants<gl::ProgramPtr> traced_variants_;
+  gl::Buffer hits_{"hits of the camera's rays", 0, gl::BufferUse::kHostVisible};
+  gl::BufferTexture hit_texels_{"hits of the camera's rays", GL_RGBA32UI};
+  gl::EmptyVertexArray full_screen_;
   GBuffer buffer_;
   gl::Framebuffer framebuffers_[2][2];  // [lobes][motion], made when first drawn to
 };

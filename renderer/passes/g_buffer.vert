@@ -19,34 +19,13 @@ out vec4 vertex_color_factor;
 #endif
 flat out uint material_index;
 
-// MOTION: how far each point has come since the frame before; DEFORMED_MOTION: within its mesh as well.
 #ifdef MOTION
+#include "shaders/displacement.glsl"
 layout(location = 8) in vec4 before_row_x;
 layout(location = 9) in vec4 before_row_y;
 layout(location = 10) in vec4 before_row_z;
 layout(location = 11) in uint first_position_before;
 out vec3 displacement_ws;
-#ifdef DEFORMED_MOTION
-layout(binding = UNIT_POSITIONS_BEFORE) uniform samplerBuffer positions_before;
-const uint kAsItWas = 0xffffffffu;
-
-vec3 moved_within_mesh(Instance instance) {
-  if (first_position_before == kAsItWas) return vec3(0.0);
-  return position - texelFetch(positions_before, int(first_position_before + uint(gl_VertexID) - instance.first_vertex)).xyz;
-}
-#endif
-
-// By the difference of the matrices, so that what stands still is found to stand still to the last bit.
-vec3 displacement(Instance instance) {
-  const vec4 before[3] = vec4[3](before_row_x, before_row_y, before_row_z);
-  vec3 moved;
-  for (int i = 0; i < 3; ++i) moved[i] = dot(instance.world_from_object[i] - before[i], vec4(position, 1.0));
-#ifdef DEFORMED_MOTION
-  const vec3 within = moved_within_mesh(instance);
-  for (int i = 0; i < 3; ++i) moved[i] += dot(before[i].xyz, within);
-#endif
-  return moved;
-}
 #endif
 
 void main() {
@@ -62,7 +41,11 @@ void main() {
 #endif
   material_index = instance.material;
 #ifdef MOTION
-  displacement_ws = displacement(instance);
+  vec3 within = vec3(0.0);
+#ifdef DEFORMED_MOTION
+  within = moved_within_mesh(first_position_before, uint(gl_VertexID) - instance.first_vertex, position);
+#endif
+  displacement_ws = displacement(instance, vec4[3](before_row_x, before_row_y, before_row_z), position, within);
 #endif
 #ifdef LIGHT_VIEW
   gl_Position = light_clip_from_world * vec4(world_position, 1.0);

@@ -50,6 +50,7 @@ void InstanceMotion::upload(const Pose& pose) {
   if (!moving_) return;
   instances_.reserve(packed.size() * sizeof(DeviceInstanceBefore));
   instances_.upload(std::span<const DeviceInstanceBefore>(packed));
+  instance_texels_.attach(instances_);
   if (!deforming_) return;
   positions_.reserve(positions * sizeof(glm::vec3));
   std::uint64_t offset_bytes = 0;
@@ -61,6 +62,7 @@ void InstanceMotion::upload(const Pose& pose) {
 }
 
 void InstanceMotion::bind() const {
+  if (moving_) instance_texels_.bind(UNIT_INSTANCES_BEFORE);
   if (deforming_) position_texels_.bind(UNIT_POSITIONS_BEFORE);
 }
 

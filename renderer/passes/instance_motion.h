@@ -22,7 +22,7 @@ class InstanceMotion {
   bool deforming() const { return deforming_; }
   /// A DeviceInstanceBefore for each instance, in the pose's order.
   const gl::Buffer& instances() const { return instances_; }
-  /// The places of deformed vertices, for g_buffer.vert.
+  /// The places of deformed vertices, for the G-buffer's shaders, and the instances for the traced one's.
   void bind() const;
 
  private:
@@ -40,6 +40,7 @@ class InstanceMotion {
   bool moving_ = false, deforming_ = false;
   gl::Buffer instances_{"instances before", 0}, positions_{"deformed positions before", 0};
   gl::BufferTexture position_texels_{"deformed positions before", GL_RGB32F};
+  gl::BufferTexture instance_texels_{"instances before", GL_RGBA32UI};
 };
 
 }  // namespace lightwell

@@ -34,6 +34,9 @@ struct DeviceLightsHeader {
   std::uint32_t padding;
 };
 
+// Where a placed light's view begins, of where it ends.
+constexpr float kNearShare = 1e-4f;
+
 int layers_of(LightKind kind) {
   return kind == LightKind::kPoint ? 6 : 1;
 }
@@ -134,6 +137,8 @@ ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
       covered_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
       tinted_(
           shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1", "TINTED_SHADOWS 1"})),
+      traced_(shaders.raster("passes/full_screen.vert", "passes/shadow_map.frag", {"TRACED 1"})),
+      traced_side_(traced_, "side_px"),
       tints_pass_(shaders),
       filter_program_(shaders.raster("passes/full_screen.vert", "passes/shadow_filter.frag")),
       filter_direction_(filter_program_, "direction"),
@@ -190,7 +195,7 @@ std::vector<LightView> ShadowMapsPass::place_lights(const Pose& pose) {
       const glm::vec3 at = placed.position_ws;
       light.shadow_far_m = farthest_corner_m(pose, at);
       const glm::vec4 position_far(at, light.shadow_far_m), range(0.0f, 0.0f, 0.0f, light.shadow_far_m);
-      const float near = light.shadow_far_m * 1e-4f;
+      const float near = light.shadow_far_m * kNearShare;
       if (placed.light.kind == LightKind::kDirectional) {
         views.push_back(directional_view(pose, placed.direction_ws));
       } else if (placed.light.kind == LightKind::kSpot) {
@@ -230,6 +235,23 @@ void ShadowMapsPass::draw(const DeviceScene& scene, const LightView& view) {
   glDisable(GL_DEPTH_TEST);
 }
 
+void ShadowMapsPass::trace(ViewTracer& tracer, const LightView& view) {
+  const int side = raw_.size_px().x;
+  const auto texels = static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
+  if (depths_.reserve(texels * sizeof(ViewDepth))) depth_texels_.attach(depths_);
+  const float far_m = view.position_far.w;
+  const bool placed = far_m > 0.0f;
+  ViewRays rays = light_rays(view.clip_from_world, placed, glm::vec3(view.position_far), side);
+  if (placed) rays.t_min = kNearShare;
+  tracer.depths(rays, placed ? DepthMeasure::kDistance : DepthMeasure::kAlongView, placed ? 1.0f / far_m : 1.0f,
+                depths_);
+  raw_framebuffer_.bind();
+  depth_texels_.bind(UNIT_VIEW_DEPTHS);
+  traced_side_ = side;
+  traced_->use();
+  full_screen_.draw_full_screen();
+}
+
 void ShadowMapsPass::filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction, int radius) {
   from.bind(0);
   to.bind();
@@ -254,13 +276,17 @@ void ShadowMapsPass::filter_into(int layer) {
   filter_pass(half_[1], target, {0, 1}, radius);
 }
 
-const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose) {
+const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose, const ViewTracing& tracing) {
   const std::vector<LightView> views = place_lights(pose);
   const bool tinted = scene.has_tinted_shadows();
   if (tinted) tints_pass_.resize(raw_.size_px(), maps_.moments.size_px(), maps_.moments.layers(), filter_radius());
   maps_.tints = tinted ? &tints_pass_.tints() : nullptr;
+  ViewTracer* tracer = tracing.for_view(scene, raw_.size_px());
   for (std::size_t layer = 0; layer < views.size(); ++layer) {
-    draw(scene, views[layer]);
+    if (tracer)
+      trace(*tracer, views[layer]);
+    else
+      draw(scene, views[layer]);
     filter_into(static_cast<int>(layer));
     if (tinted) tints_pass_.run(scene, raw_, views[layer], static_cast<int>(layer));
   }

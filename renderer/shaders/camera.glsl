@@ -33,6 +33,12 @@ float view_depth(float depth) {
   return camera.eye_ws.w > 0.5 ? znear / depth : mix(zfar, znear, depth);
 }
 
+// And back.
+float depth_of_view(float view_depth_m) {
+  const float znear = camera.right_ws.w, zfar = camera.down_ws.w;
+  return camera.eye_ws.w > 0.5 ? znear / view_depth_m : (zfar - view_depth_m) / (zfar - znear);
+}
+
 vec3 position_from_depth(vec2 position_px, float depth) {
   const vec4 eye_ws = camera.eye_ws;
   const vec3 forward_ws = camera.forward_ws.xyz;

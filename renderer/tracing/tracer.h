@@ -90,6 +90,7 @@ struct Coverage {
   std::shared_ptr<const Image> image;  // null: alpha is `factor` alone
   TextureUse use;
   Wrap wrap_s = Wrap::kRepeat, wrap_t = Wrap::kRepeat;
+  bool double_sided = false;  // a camera sees its back as well; rays meet both sides of everything
 };
 
 /// What a tracer needs to know of the world in one frame.
@@ -97,6 +98,8 @@ struct TraceScene {
   std::span<const Instance> instances;
   std::span<const Coverage> coverage;  // one per instance
 };
+
+class ViewTracer;
 
 class Tracer {
  public:
@@ -123,6 +126,9 @@ class Tracer {
   /// For each pixel and direction the nearest of its patch's candidates that its own ray meets: hits[direction *
   /// pixels + pixel], t = kMiss where there is none. `list` is filled with them, as by closest_hit.
   virtual void test_candidates(const CandidateTest& test, gl::Buffer& hits, HitList& list) = 0;
+
+  /// Where it finds what views see without rays in a buffer; null: it does not.
+  virtual ViewTracer* views() { return nullptr; }
 
   /// Bytes held for hierarchies, on whichever side they live.
   virtual std::uint64_t memory_bytes() const = 0;

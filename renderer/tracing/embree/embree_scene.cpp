@@ -71,6 +71,13 @@ float bounds_area_m2(RTCScene scene) {
   return 2.0f * (size.x * size.y + size.y * size.z + size.z * size.x);
 }
 
+// The inverse transpose times the determinant's magnitude.
+glm::mat3 normal_matrix(const glm::mat4& world_from_object) {
+  const glm::vec3 x(world_from_object[0]), y(world_from_object[1]), z(world_from_object[2]);
+  const glm::mat3 cofactor(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+  return glm::dot(x, cofactor[0]) < 0.0f ? -cofactor : cofactor;
+}
+
 }  // namespace
 
 EmbreeScene::EmbreeScene(unsigned threads) {
@@ -109,11 +116,13 @@ void EmbreeScene::update(const TraceScene& scene) {
 void EmbreeScene::prepare_coverage_tests(const TraceScene& scene, std::vector<bool>& filtered) {
   coverage_.clear();
   primitives_.clear();
+  double_sided_.clear();
   images_.clear();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Primitive& primitive = *scene.instances[i].primitive;
     coverage_.push_back(prepare_coverage(scene.coverage[i], primitive, alpha_ranges_));
     primitives_.push_back(&primitive);
+    double_sided_.push_back(scene.coverage[i].double_sided);
     if (coverage_.back().image) images_.push_back(scene.coverage[i].image);
     filtered.push_back(coverage_.back().outcome != CoverageTest::Outcome::kAlwaysHit);
   }
@@ -196,6 +205,7 @@ bool EmbreeScene::show(Slot& slot, std::uint32_t id, const BottomLevel& level, c
   slot.shows = &level;
   slot.shown_build = level.built_in;
   slot.world_from_object = world_from_object;
+  slot.normal_from_object = normal_matrix(world_from_object);
   return true;
 }
 

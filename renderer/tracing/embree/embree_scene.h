@@ -40,6 +40,14 @@ class EmbreeScene {
     return coverage_[instance].outcome != CoverageTest::Outcome::kAlwaysHit;
   }
 
+  /// Coverage::double_sided.
+  bool is_double_sided(std::uint32_t instance) const { return double_sided_[instance]; }
+
+  /// Embree's normal of a hit, from the space of an instance of the top level to the world. Its length is meaningless.
+  glm::vec3 normal_ws(std::uint32_t top_level_id, glm::vec3 normal) const {
+    return slots_[top_level_id].normal_from_object * normal;
+  }
+
   /// The corners of a triangle in the world.
   std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const {
     const Placed& placed = placed_[instance];
@@ -70,6 +78,7 @@ class EmbreeScene {
     const BottomLevel* shows = nullptr;
     std::uint64_t shown_build = 0;
     glm::mat4 world_from_object{0.0f};
+    glm::mat3 normal_from_object{0.0f};  // keeps front and back where the winding has them, mirrored or not
   };
 
   struct Placed {  // where an instance's triangles are; valid as long as the frame's Pose
@@ -99,6 +108,7 @@ class EmbreeScene {
   std::vector<std::uint32_t> first_instances_;  // by slot
   std::vector<CoverageTest> coverage_;          // by instance, as are the following
   std::vector<const Primitive*> primitives_;
+  std::vector<bool> double_sided_;
   std::vector<Placed> placed_;
   std::vector<std::shared_ptr<const Image>> images_;  // keep CoverageTest::image alive
 };
