@@ -6,9 +6,9 @@ namespace lightwell {
 
 namespace {
 
-// From here on rays are quicker, measured with llvmpipe and Embree on four cores: a triangle costs the rasteriser about as
-// much as a ray costs the tracer, but of the rasteriser's pixels none is for nothing. Fewer triangles are drawn in the time
-// that it takes to hand the work from one to the other.
+// From here on rays are quicker, measured with llvmpipe and Embree on four cores: a triangle costs the rasteriser about
+// as much as a ray costs the tracer, but of the rasteriser's pixels none is for nothing. Fewer triangles are drawn in
+// the time that it takes to hand the work from one to the other.
 constexpr double kTrianglesPerPixel = 0.25, kFewestTriangles = 50'000.0;
 
 constexpr float kFarthest = 1e30f;
