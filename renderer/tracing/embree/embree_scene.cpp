@@ -1,5 +1,6 @@
 #include "renderer/tracing/embree/embree_scene.h"
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -188,7 +189,12 @@ void EmbreeScene::rebuild_top_level(const std::vector<GeometryGroup>& groups,
   }
   if (!changed) return;
   rtcCommitScene(top_level_.get());
-  diagonal_m_ = groups.empty() ? 0.0f : glm::length(extent_m(top_level_.get()));
+  double triangles = 0.0;
+  for (const GeometryGroup& group : groups)
+    for (const Primitive* primitive : group.key.primitives)
+      triangles += static_cast<double>(primitive->indices.size() / 3);
+  triangle_size_m_ =
+      groups.empty() ? 0.0f : glm::length(extent_m(top_level_.get())) / static_cast<float>(std::sqrt(triangles));
 }
 
 bool EmbreeScene::show(Slot& slot, std::uint32_t id, const BottomLevel& level, const glm::mat4& world_from_object) {

@@ -58,8 +58,8 @@ class EmbreeScene {
     return {in_world(corner[0]), in_world(corner[1]), in_world(corner[2])};
   }
 
-  /// Of the bounds of everything.
-  float diagonal_m() const { return diagonal_m_; }
+  /// About the size of a triangle, if all were alike and lay as a sheet across the bounds of everything.
+  float triangle_size_m() const { return triangle_size_m_; }
 
   RTCDevice device() const { return device_.get(); }
   std::uint64_t memory_bytes() const { return memory_bytes_.load(std::memory_order_relaxed); }
@@ -101,7 +101,7 @@ class EmbreeScene {
   std::map<GeometryKey, std::unique_ptr<BottomLevel>> bottom_levels_;
   EmbreeSceneHandle top_level_;
   std::vector<Slot> slots_;
-  float diagonal_m_ = 0.0f;
+  float triangle_size_m_ = 0.0f;
   std::uint64_t frame_ = 0;
 
   AlphaRanges alpha_ranges_;
