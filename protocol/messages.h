@@ -265,6 +265,7 @@ struct Welcome {
   std::string device;
   Limits limits;
   std::vector<std::string> methods;  // what this server can do
+  std::vector<std::string> codecs;   // what it can send pictures as
   Bounds bounds;
   FreeCamera view;  // the camera in world space, however it was asked for
   std::vector<LightEntry> lights;

@@ -129,6 +129,7 @@ void read_message(ObjectReader& object, Welcome& out) {
   object.required("device", out.device, read_text);
   object.required("limits", out.limits, read_limits);
   object.required("methods", out.methods, read_texts);
+  object.required("codecs", out.codecs, read_texts);
   object.required("bounds", out.bounds, read_bounds);
   object.required("view", out.view, read_free_camera);
   object.required("lights", out.lights, read_lights);

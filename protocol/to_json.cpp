@@ -118,6 +118,7 @@ struct MessageWriter {
             {"device", welcome.device},
             {"limits", limits_json(welcome.limits)},
             {"methods", welcome.methods},
+            {"codecs", welcome.codecs},
             {"bounds", bounds_json(welcome.bounds)},
             {"view", to_json(welcome.view)},
             {"lights", array_of(welcome.lights)}};

@@ -51,6 +51,7 @@ struct ServeOptions {
   std::string tracer;                      // as RendererOptions::tracer
   Settings settings = viewing_settings();  // what a session starts with
   int quality = 80;                        // JPEG quality while the picture moves, 1..100; a still one ends at 95
+  bool video = true;                       // where this build can encode it
   double reference_after_s = 10.0;         // still for so long, a session's picture is made by reference; 0: never
   std::string base_path;                   // "/lightwell" if a proxy forwards that prefix; empty: none
   AccessOptions access;                    // who may do what

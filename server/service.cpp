@@ -41,6 +41,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                      return render_loop.is_ready() ? render_loop.ready().get().methods
                                                    : std::vector<std::string>{"thesis"};
                    },
+                   [this] { return codecs(); },
                    [this](std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account) {
                      direct(std::move(session), std::move(account));
                    },
@@ -83,10 +84,16 @@ void Service::State::load_scenes() {
     first_scene_promise.set_value(*name);
     scenes.add_builtin_scenes();
     scenes_loaded = true;
-    can_encode_video();  // loads the encoder before somebody waits for it
+    codecs();  // loads the encoder before somebody waits for it
   } catch (...) {
     first_scene_promise.set_exception(std::current_exception());
   }
+}
+
+std::vector<std::string> Service::State::codecs() const {
+  std::vector<std::string> codecs{"jpeg"};
+  if (options.video && can_encode_video()) codecs.emplace_back("h264");
+  return codecs;
 }
 
 /// On the render thread, when the shaders are compiled: waits for the scene. Its geometry is on the device afterwards.

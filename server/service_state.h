@@ -16,6 +16,8 @@ struct Service::State {
   State(const ServeOptions& serve_options, MakePictureSource make_source, std::function<int()> open_connections);
 
   void load_scenes();
+  /// What pictures can be sent as, the one that every client takes first.
+  std::vector<std::string> codecs() const;
   Shot warm_up_shot();
   void direct(std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account);
   void keep_house();

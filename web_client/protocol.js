@@ -259,7 +259,7 @@ const server_messages = {
   welcome: object({
     session: token, role, codec: token, protocol: integer(protocol_version, protocol_version), resume: token,
     scene: scene_name, scenes, settings, camera, playing: boolean, time_s: time, device: text, limits, methods: texts,
-    bounds, view: free_camera, lights,
+    codecs: texts, bounds, view: free_camera, lights,
   }),
   state: object({}, {
     seq: sequence, scene: scene_name, scenes, settings, camera, playing: boolean, time_s: time, bounds,

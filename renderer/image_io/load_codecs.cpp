@@ -1,8 +1,6 @@
 #include "renderer/image_io/load_codecs.h"
 
-#ifndef LIGHTWELL_CODECS_LINKED
-#include <dlfcn.h>
-#endif
+#include "renderer/modules/load_module.h"
 
 namespace lightwell {
 
@@ -13,18 +11,10 @@ Result<const codecs::Table*> load() {
   return lightwell_image_codecs();
 }
 #else
-// Beside the program, or where libraries are: see CMAKE_BUILD_RPATH.
-constexpr const char* kModule = "liblightwell_image_codecs.so";
-
 Result<const codecs::Table*> load() {
-  void* module = dlopen(kModule, RTLD_LAZY | RTLD_LOCAL);
-  const auto failed = [] {
-    return Error{ErrorKind::kInternal, kModule, std::string("cannot be loaded: ") + dlerror()};
-  };
-  if (!module) return failed();
-  void* symbol = dlsym(module, "lightwell_image_codecs");
-  if (!symbol) return failed();
-  return reinterpret_cast<decltype(&lightwell_image_codecs)>(symbol)();
+  const auto function = load_module_function("liblightwell_image_codecs.so", "lightwell_image_codecs");
+  if (!function) return function.error();
+  return reinterpret_cast<decltype(&lightwell_image_codecs)>(*function)();
 }
 #endif
 

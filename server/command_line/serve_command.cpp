@@ -105,6 +105,8 @@ void add_serve_options(CLI::App& app, ServeOptions& options) {
   app.add_option("--web-client", options.web_client_dir, "Serve the viewer from this folder, not from the binary")
       ->check(CLI::ExistingDirectory);
   add_integer(app, "--quality", options.quality, 1, 100, "JPEG quality while the picture moves");
+  app.add_flag("--video,!--no-video", options.video,
+               "Send what moves as H.264 to who takes it, and make films of sequences, where libavcodec is there");
   add_parsed(
       app, "--reference-after", options.reference_after_s,
       [](const std::string& text) { return parse_number(text, 0.0, 1e6); }, "SECONDS",

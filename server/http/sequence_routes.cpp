@@ -182,8 +182,8 @@ Response get_video(const Services& services, const Request& request) {
   if (!sequence) return no_such_sequence();
   auto frames = film_frames(services, *sequence, request);
   if (!frames) return http::problem_response(frames.problem());
-  if (!can_encode_video())
-    return refuse(501, "this server was built or runs without an H.264 encoder; fetch the frames, or the archive");
+  if (!services.options.video || !can_encode_video())
+    return refuse(501, "this server was built, or runs, without an H.264 encoder; fetch the frames, or the archive");
   const std::string tag = quoted(sequence->id + "-" + frames->files.front() + "-mp4");
   http::Fields fields{{"ETag", tag},
                       {"Cache-Control", "private, max-age=31536000, immutable"},

@@ -60,6 +60,15 @@ double resident_bytes() {
   return resident_pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
+/// A number for each codec.
+struct ByCodec {
+  explicit ByCodec(Family<Counter>& family)
+      : jpeg(family.Add({{"codec", "jpeg"}})), h264(family.Add({{"codec", "h264"}})) {}
+  Counter& of(PictureCodec codec) { return codec == PictureCodec::kH264 ? h264 : jpeg; }
+
+  Counter &jpeg, &h264;
+};
+
 }  // namespace
 
 struct Metrics::State {
@@ -82,10 +91,10 @@ struct Metrics::State {
   Counter& rays = counters("lightwell_rays_total", "Rays traced").Add({});
   Histogram& encode_time =
       histograms("lightwell_encode_seconds", "Time to encode a stream's picture").Add({}, kStageSeconds);
-  Counter& encoded = counters("lightwell_pictures_encoded_total", "Pictures encoded for streams").Add({});
-  Counter& encoded_bytes = counters("lightwell_encoded_bytes_total", "Bytes of pictures encoded for streams").Add({});
-  Counter& sent = counters("lightwell_pictures_sent_total", "Pictures sent to viewers").Add({});
-  Counter& sent_bytes = counters("lightwell_sent_bytes_total", "Bytes of pictures sent to viewers").Add({});
+  ByCodec encoded{counters("lightwell_pictures_encoded_total", "Pictures encoded for streams")};
+  ByCodec encoded_bytes{counters("lightwell_encoded_bytes_total", "Bytes of pictures encoded for streams")};
+  ByCodec sent{counters("lightwell_pictures_sent_total", "Pictures sent to viewers")};
+  ByCodec sent_bytes{counters("lightwell_sent_bytes_total", "Bytes of pictures sent to viewers")};
   Histogram& acknowledge_time =
       histograms("lightwell_acknowledge_seconds", "From a picture's being sent to its being acknowledged")
           .Add({}, kRequestSeconds);
@@ -126,15 +135,18 @@ void Metrics::frame_failed(ErrorKind kind) {
   state_->failures.Add({{"kind", label_of(kind)}}).Increment();
 }
 
-void Metrics::picture_encoded(double seconds, std::uint64_t bytes) {
+void Metrics::picture_encoded(double seconds, const EncodedBytes& bytes) {
   state_->encode_time.Observe(seconds);
-  state_->encoded.Increment();
-  state_->encoded_bytes.Increment(static_cast<double>(bytes));
+  for (const auto& [codec, size] : {std::pair(PictureCodec::kJpeg, bytes.jpeg), {PictureCodec::kH264, bytes.h264}}) {
+    if (size == 0) continue;
+    state_->encoded.of(codec).Increment();
+    state_->encoded_bytes.of(codec).Increment(static_cast<double>(size));
+  }
 }
 
-void Metrics::picture_sent(std::uint64_t bytes) {
-  state_->sent.Increment();
-  state_->sent_bytes.Increment(static_cast<double>(bytes));
+void Metrics::picture_sent(PictureCodec codec, std::uint64_t bytes) {
+  state_->sent.of(codec).Increment();
+  state_->sent_bytes.of(codec).Increment(static_cast<double>(bytes));
 }
 
 void Metrics::picture_acknowledged(double seconds) {

@@ -28,6 +28,12 @@ struct DeviceMemory {
   std::uint64_t total_bytes = 0, used_bytes = 0;
 };
 
+/// What a stream's picture was made as; 0 bytes: not as that.
+struct EncodedBytes {
+  std::uint64_t jpeg = 0, h264 = 0;
+};
+enum class PictureCodec { kJpeg, kH264 };
+
 class Metrics {
  public:
   Metrics();
@@ -37,8 +43,8 @@ class Metrics {
 
   void frame_rendered(const Frame& frame, Purpose purpose, double seconds);
   void frame_failed(ErrorKind kind);
-  void picture_encoded(double seconds, std::uint64_t bytes);
-  void picture_sent(std::uint64_t bytes);
+  void picture_encoded(double seconds, const EncodedBytes& bytes);
+  void picture_sent(PictureCodec codec, std::uint64_t bytes);
   /// From a frame's being sent to its being acknowledged.
   void picture_acknowledged(double seconds);
   /// `route` is the template of the path ("/v1/scenes/{name}"), or "none" if there is no such path.

@@ -25,7 +25,9 @@ class OwnLook : public DirectedSession {
   std::shared_ptr<const SessionState> state() const override;
   Audience& audience() override { return audience_; }
   bool ended() const override { return ended_ || session_->ended(); }
-  void picture_encoded(double seconds, std::uint64_t bytes) override { session_->picture_encoded(seconds, bytes); }
+  void picture_encoded(double seconds, const EncodedBytes& bytes) override {
+    session_->picture_encoded(seconds, bytes);
+  }
   void wake_render_loop() override { session_->wake_render_loop(); }
 
  private:

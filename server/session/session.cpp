@@ -15,10 +15,8 @@ namespace {
 constexpr auto kSeatReserved = std::chrono::seconds(15);  // a viewer waits for 10 s at most before it tries again
 
 /// The first of those that the client takes which this server has.
-std::string codec_for(const protocol::Hello& hello) {
-  const auto chosen = std::find_if(hello.codecs.begin(), hello.codecs.end(), [](const std::string& codec) {
-    return codec == "jpeg" || (codec == "h264" && can_encode_video());
-  });
+std::string codec_for(const protocol::Hello& hello, const std::vector<std::string>& codecs) {
+  const auto chosen = std::find_first_of(hello.codecs.begin(), hello.codecs.end(), codecs.begin(), codecs.end());
   return chosen != hello.codecs.end() ? *chosen : "jpeg";
 }
 
@@ -212,7 +210,7 @@ protocol::Decoded<protocol::Welcome> Session::greet(const protocol::Hello& hello
   if (!state->moving()) audience_.show_latest(viewer, state->revision);
   protocol::Welcome answer = welcome(*state);
   answer.role = role;
-  answer.codec = codec_for(hello);
+  answer.codec = codec_for(hello, answer.codecs);
   return answer;
 }
 
@@ -254,6 +252,7 @@ protocol::Welcome Session::welcome(const SessionState& state) const {
   welcome.limits.max_samples = static_cast<std::uint32_t>(limits.max_samples);
   welcome.limits.max_upload_bytes = limits.max_upload_bytes;
   welcome.methods = surroundings_.methods();
+  welcome.codecs = surroundings_.codecs();
   welcome.bounds = state.stage->bounds();
   welcome.view = view_at(state, welcome.time_s);
   welcome.lights = state.stage->lights(welcome.time_s);

@@ -29,6 +29,7 @@ struct SessionSurroundings {
   std::function<void()> wake_render_loop;
   std::function<std::string()> device;  // for welcomes: what pictures are made with
   std::function<std::vector<std::string>()> methods;
+  std::function<std::vector<std::string>()> codecs;  // that pictures can be sent as
   /// Has pictures made of what is directed, in the time of an account.
   std::function<void(std::shared_ptr<DirectedSession>, std::shared_ptr<RenderAccount>)> direct;
   /// Something has changed that is kept of a session.
@@ -75,7 +76,9 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   std::optional<protocol::Problem> apply_look(const protocol::Look& look, Viewer& by) override;
   protocol::StateUpdate change_of(unsigned members) const override;
   void window_opened() override { surroundings_.wake_render_loop(); }
-  void picture_sent(std::uint64_t bytes) override { surroundings_.metrics.picture_sent(bytes); }
+  void picture_sent(PictureCodec codec, std::uint64_t bytes) override {
+    surroundings_.metrics.picture_sent(codec, bytes);
+  }
   void picture_acknowledged(double seconds) override { surroundings_.metrics.picture_acknowledged(seconds); }
   void leave(Viewer& viewer) override;
 
@@ -83,7 +86,7 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   std::shared_ptr<const SessionState> state() const override;
   Audience& audience() override { return audience_; }
   bool ended() const override { return ended_; }
-  void picture_encoded(double seconds, std::uint64_t bytes) override {
+  void picture_encoded(double seconds, const EncodedBytes& bytes) override {
     surroundings_.metrics.picture_encoded(seconds, bytes);
   }
   void wake_render_loop() override { surroundings_.wake_render_loop(); }

@@ -217,7 +217,8 @@ void Director::show(const Take& take, const Frame& frame, std::uint64_t number) 
   picture->number = number;
   describe(take, frame, *picture);
   picture->stats.encode_ms = std::chrono::duration<double, std::milli>(steady_clock::now() - start).count();
-  session_->picture_encoded(picture->stats.encode_ms * 1e-3, bytes);
+  session_->picture_encoded(picture->stats.encode_ms * 1e-3, {picture->file ? picture->file->size() : 0,
+                                                              picture->video ? picture->video->bytes->size() : 0});
   session_->audience().show(std::move(picture));
 }
 

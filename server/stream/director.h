@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 
+#include "server/operations/metrics.h"
 #include "server/render/subject.h"
 #include "server/session/session_state.h"
 #include "server/stream/audience.h"
@@ -31,7 +32,7 @@ class DirectedSession {
   virtual Audience& audience() = 0;
   virtual bool ended() const = 0;
   /// A picture was encoded, on whatever thread.
-  virtual void picture_encoded(double seconds, std::uint64_t bytes) = 0;
+  virtual void picture_encoded(double seconds, const EncodedBytes& bytes) = 0;
   /// The render loop should ask again.
   virtual void wake_render_loop() = 0;
 };

@@ -11,6 +11,7 @@
 
 #include "protocol/codec.h"
 #include "server/net/application.h"
+#include "server/operations/metrics.h"
 #include "server/session/session_state.h"
 #include "server/stream/link_pace.h"
 #include "server/stream/picture.h"
@@ -32,7 +33,7 @@ class ViewerHost {
   virtual std::optional<protocol::Problem> apply_look(const protocol::Look& look, Viewer& by) = 0;
   /// What viewers are told when these members have changed.
   virtual protocol::StateUpdate change_of(unsigned members) const = 0;
-  virtual void picture_sent(std::uint64_t bytes) = 0;
+  virtual void picture_sent(PictureCodec codec, std::uint64_t bytes) = 0;
   /// So many seconds after it was sent.
   virtual void picture_acknowledged(double seconds) = 0;
   /// The viewer can take a picture again.

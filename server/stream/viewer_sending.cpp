@@ -105,7 +105,7 @@ net::Outgoing Viewer::take_picture() {
   in_flight_.push_back({last_frame_, now, bytes_sent, before + bytes_sent});
   sent_times_.push_back(now);
   queue_stats(*picture, now);
-  host_->picture_sent(payload->size());
+  host_->picture_sent(as_video ? PictureCodec::kH264 : PictureCodec::kJpeg, payload->size());
   const auto bytes = protocol::encode_frame_header(header);
   return net::BinaryMessage{std::string(bytes.begin(), bytes.end()), payload};
 }

@@ -1,8 +1,6 @@
 #include "server/video/load_codecs.h"
 
-#if defined(LIGHTWELL_HAS_VIDEO) && !defined(LIGHTWELL_VIDEO_LINKED)
-#include <dlfcn.h>
-#endif
+#include "renderer/modules/load_module.h"
 
 namespace lightwell {
 namespace {
@@ -16,14 +14,10 @@ Result<const video_codecs::Table*> load() {
   return lightwell_video_codecs();
 }
 #else
-// Beside the program, or where libraries are: see CMAKE_BUILD_RPATH.
-constexpr const char* kModule = "liblightwell_video_codecs.so";
-
 Result<const video_codecs::Table*> load() {
-  void* module = dlopen(kModule, RTLD_LAZY | RTLD_LOCAL);
-  void* symbol = module ? dlsym(module, "lightwell_video_codecs") : nullptr;
-  if (!symbol) return Error{ErrorKind::kUnsupported, kModule, std::string("cannot be loaded: ") + dlerror()};
-  return reinterpret_cast<decltype(&lightwell_video_codecs)>(symbol)();
+  const auto function = load_module_function("liblightwell_video_codecs.so", "lightwell_video_codecs");
+  if (!function) return function.error();
+  return reinterpret_cast<decltype(&lightwell_video_codecs)>(*function)();
 }
 #endif
 

@@ -5,7 +5,8 @@
 
 namespace lightwell {
 
-/// The module's functions, loaded by the first call; kUnsupported names what is missing. Thread-safe.
+/// The module's functions, loaded by the first call; kUnsupported in a build without them, kInternal where they
+/// cannot be loaded. Thread-safe.
 Result<const video_codecs::Table*> video_codecs_table();
 
 }  // namespace lightwell

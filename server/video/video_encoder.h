@@ -30,7 +30,7 @@ class VideoEncoder {
 
   /// `rgbx`: 4 bytes a pixel of sRGB, row 0 at the top. `quality` as a JPEG's, 1..100. `want_key`: the packet is to
   /// stand for itself; it does so anyway where the size changes. kUnsupported without an encoder, kInternal where it
-  /// fails.
+  /// cannot be loaded or fails.
   Result<VideoPacket> encode(std::span<const std::uint8_t> rgbx, glm::ivec2 size_px, int quality, bool want_key);
 
   /// Gives its memory back. The next packet is a key.

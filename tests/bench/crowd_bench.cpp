@@ -107,8 +107,8 @@ void measure_watchers(int port, double seconds, Report& report) {
   for (int i = 0; i <= kWatchers; ++i)
     viewers.push_back(std::make_unique<Viewer>(port, session, i ? protocol::Role::kViewer : protocol::Role::kDriver));
   const std::vector<double> rates = rates_of(viewers, seconds);
-  const double encoded = metric(port, "lightwell_pictures_encoded_total");
-  const double sent = metric(port, "lightwell_pictures_sent_total");
+  const double encoded = metric(port, "lightwell_pictures_encoded_total{codec=\"jpeg\"}");
+  const double sent = metric(port, "lightwell_pictures_sent_total{codec=\"jpeg\"}");
   report.section("64 watchers of one session")
       .push_back({{{"size", "128x128"}},
                   {{"driver frames/s", rates.front()},

@@ -11,7 +11,10 @@ import unittest
 
 import yaml
 
-PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from service_test import Server  # noqa: E402  (takes the program's path from the arguments)
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DEPLOY = ROOT / "setup/deploy"
 HAPROXY = shutil.which("haproxy") or "/usr/sbin/haproxy"
@@ -82,7 +85,7 @@ class KubernetesTest(unittest.TestCase):
         for probe in ("readinessProbe", "livenessProbe"):
             self.assertEqual(container[probe]["httpGet"]["port"], port["containerPort"])
             self.assertIn(f'"{container[probe]["httpGet"]["path"]}"', document)
-        self.assertEqual(self.objects["Service"]["spec"]["ports"], [{"port": port["containerPort"]}])
+        self.assertEqual(self.objects["Service"]["spec"]["ports"], [{"name": "http", "port": port["containerPort"]}])
         self.assertIn(f'EXPOSE {port["containerPort"]}\n', (DEPLOY / "Dockerfile").read_text())
 
     def test_pods_may_finish_their_drain(self):
@@ -105,6 +108,50 @@ class KubernetesTest(unittest.TestCase):
                 self.assertEqual(result.returncode, 0, result.stderr)
             frames = sorted(int(path.stem) for path in pathlib.Path(folder).glob("*.png"))
         self.assertEqual(frames, [*range(100), *range(300, 400)])
+
+
+class MetricsTest(unittest.TestCase):
+    """How Prometheus is told to ask, held to what a server answers that asks for tokens."""
+    TOKEN = "a-token-of-the-deploy-test"
+
+    def setUp(self):
+        with open(DEPLOY / "kubernetes.yaml") as file:
+            self.objects = {each["kind"]: each for each in yaml.safe_load_all(file)}
+        with open(DEPLOY / "service_monitor.yaml") as file:
+            self.monitor = yaml.safe_load(file)
+        with open(DEPLOY / "prometheus.yml") as file:
+            (self.scraping,) = yaml.safe_load(file)["scrape_configs"]
+        self.server = Server("--token", self.TOKEN).wait_until_ready()
+
+    def tearDown(self):
+        self.server.stop()
+
+    def test_the_monitor_finds_the_service_and_its_token(self):
+        self.assertEqual((self.monitor["apiVersion"], self.monitor["kind"]),
+                         ("monitoring.coreos.com/v1", "ServiceMonitor"))
+        service = self.objects["Service"]
+        self.assertLessEqual(self.monitor["spec"]["selector"]["matchLabels"].items(),
+                             service["metadata"]["labels"].items())
+        (endpoint,) = self.monitor["spec"]["endpoints"]
+        self.assertIn(endpoint["port"], [port["name"] for port in service["spec"]["ports"]])
+        (container,) = self.objects["StatefulSet"]["spec"]["template"]["spec"]["containers"]
+        (token,) = [each for each in container["env"] if each["name"] == "LIGHTWELL_TOKEN"]
+        self.assertEqual(endpoint["authorization"]["credentials"], token["valueFrom"]["secretKeyRef"])
+
+    def test_asked_so_a_server_tells_and_not_otherwise(self):
+        (endpoint,) = self.monitor["spec"]["endpoints"]
+        for path, authorization in ((endpoint["path"], endpoint["authorization"]),
+                                    (self.scraping["metrics_path"], self.scraping["authorization"])):
+            fields = {"Authorization": f"{authorization['type']} {self.TOKEN}"}
+            status, headers, body = self.server.ask("GET", path, headers=fields)
+            self.assertEqual((status, headers.get_content_type()), (200, "text/plain"))
+            self.assertIn(b"lightwell_ready 1", body)
+            self.assertEqual(self.server.ask("GET", path)[0], 401)
+
+    def test_the_targets_are_the_balancers_servers(self):
+        (group,) = self.scraping["static_configs"]
+        servers = re.findall(r"^  server \S+ (\S+)$", (DEPLOY / "haproxy.cfg").read_text(), re.MULTILINE)
+        self.assertEqual(group["targets"], servers)
 
 
 class SlurmTest(unittest.TestCase):

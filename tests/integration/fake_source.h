@@ -29,6 +29,8 @@ struct FakeStudio {
   std::atomic<int> given_up = 0;           // or not: an input came
   std::atomic<int> given_up_in_a_row = 0;  // at most
 
+  std::vector<glm::ivec2> sizes_to_warm_up;  // set before the source is made
+
   std::vector<FrameRequest> requests() const {
     std::lock_guard lock(mutex);
     return log;
@@ -53,6 +55,8 @@ class FakeSource : public PictureSource {
   explicit FakeSource(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) { ++studio_->sources; }
 
   SourceFacts facts() override { return {"a fake device", "a test", "none", {"thesis"}}; }
+
+  std::vector<glm::ivec2> sizes_to_warm_up() override { return studio_->sizes_to_warm_up; }
 
   std::unique_ptr<RenderView> make_view() override { return std::make_unique<View>(studio_); }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/integration/fake_source.h"
 #include "tests/integration/line.h"
 
@@ -31,8 +33,9 @@ class Greedy : public Subject {
     longest_s = std::max(longest_s.load(), took.count());
     used_s = used_s + took.count();
   }
-  bool ended() const override { return false; }
+  bool ended() const override { return satisfied; }
 
+  std::atomic<bool> satisfied = false;
   std::atomic<double> used_s = 0.0, longest_s = 0.0;
 
  private:
@@ -41,15 +44,15 @@ class Greedy : public Subject {
   SteadyTime start_{};
 };
 
-std::unique_ptr<RenderLoop> fake_loop() {
+std::unique_ptr<RenderLoop> fake_loop(std::shared_ptr<FakeStudio> studio = std::make_shared<FakeStudio>()) {
   const auto warm_up = [] {
     Shot shot;
     shot.scene = std::make_shared<const Scene>();
     shot.request.size_px = {1, 1};
     return shot;
   };
-  auto loop = std::make_unique<RenderLoop>(fake_source(std::make_shared<FakeStudio>()), warm_up,
-                                           [](Share, const Result<Frame>&, double) {});
+  auto loop =
+      std::make_unique<RenderLoop>(fake_source(std::move(studio)), warm_up, [](Share, const Result<Frame>&, double) {});
   loop->ready().wait();
   return loop;
 }
@@ -88,6 +91,52 @@ TEST(RenderLoop, ALookOfOnesOwnTakesFromItsSessionsShare) {
   const double longest_s = std::max({alone->longest_s.load(), driver->longest_s.load(), look->longest_s.load()});
   EXPECT_LE(std::abs(alone->used_s - (driver->used_s + look->used_s)), 2.0 * longest_s);
   EXPECT_LE(std::abs(driver->used_s - look->used_s), 2.0 * longest_s);
+}
+
+std::vector<glm::ivec2> sizes_of(const std::vector<FrameRequest>& requests) {
+  std::vector<glm::ivec2> sizes;
+  for (const FrameRequest& request : requests) sizes.push_back(request.size_px);
+  return sizes;
+}
+
+TEST(RenderLoop, WarmsUpOnceWhatTheSourceAsksForWhenNobodyWaits) {
+  const auto studio = std::make_shared<FakeStudio>();
+  studio->sizes_to_warm_up = {{160, 96}, {72, 40}, {256, 256}};
+  const auto loop = fake_loop(studio);
+  const std::vector<glm::ivec2> all{{1, 1}, {160, 96}, {72, 40}, {256, 256}};  // after the first picture
+  EXPECT_TRUE(comes_true([&] { return sizes_of(studio->requests()) == all; }));
+  const auto greedy = std::make_shared<Greedy>(1);
+  loop->add(greedy, Share::kOwn);
+  EXPECT_TRUE(comes_true([&] { return greedy->used_s > 0.1; }));
+  greedy->satisfied = true;
+  EXPECT_TRUE(studio->comes_to_rest());
+  loop->stop();
+  const std::vector<glm::ivec2> sizes = sizes_of(studio->requests());
+  EXPECT_EQ(std::count(sizes.begin() + 4, sizes.end(), glm::ivec2(1, 1)), std::ssize(sizes) - 4);
+  EXPECT_EQ(studio->views, 0);  // and what they were made in is gone
+}
+
+TEST(RenderLoop, WarmsNothingUpWhileSomebodyWaits) {
+  const auto studio = std::make_shared<FakeStudio>();
+  studio->sizes_to_warm_up = {{160, 96}};
+  const auto loop = fake_loop(studio);
+  const auto greedy = std::make_shared<Greedy>(1);
+  loop->add(greedy, Share::kOwn);
+  EXPECT_TRUE(comes_true([&] { return greedy->used_s > 4.0; }));  // longer than it waits before it begins
+  std::vector<glm::ivec2> sizes = sizes_of(studio->requests());
+  EXPECT_EQ(std::count(sizes.begin(), sizes.end(), glm::ivec2(160, 96)), 0);
+  greedy->satisfied = true;
+  loop->wake();
+  EXPECT_TRUE(comes_true([&] { return sizes_of(studio->requests()).back() == glm::ivec2(160, 96); }));
+}
+
+TEST(RenderLoop, ASizeThatFailsToWarmUpIsPassedOver) {
+  const auto studio = std::make_shared<FakeStudio>();
+  studio->sizes_to_warm_up = {{160, 96}, {72, 40}};
+  const auto loop = fake_loop(studio);
+  studio->losing = true;  // the device, with the first of them
+  EXPECT_TRUE(comes_true([&] { return sizes_of(studio->requests()).back() == glm::ivec2(72, 40); }));
+  EXPECT_EQ(studio->sources, 2);
 }
 
 }  // namespace

@@ -137,5 +137,28 @@ TEST_F(StreamTest, ClosesAClientThatAcknowledgesNothing) {
   EXPECT_TRUE(comes_true([&] { return metric("lightwell_viewers") == 1; }));
 }
 
+ServeOptions options_without_video() {
+  ServeOptions options = test_options();
+  options.video = false;
+  return options;
+}
+
+class WithoutVideoTest : public ServerTest {
+ protected:
+  WithoutVideoTest() : ServerTest(options_without_video()) {}
+};
+
+TEST_F(WithoutVideoTest, AnOperatorMayHaveNoVideo) {
+  StreamClient client(server_.port(), make_session({{"scene", "helicopters"}}));
+  const json welcome = client.hello({{"codecs", {"h264", "jpeg"}}});
+  EXPECT_EQ(welcome["codec"], "jpeg");
+  EXPECT_EQ(welcome["codecs"], json::array({"jpeg"}));
+  const auto frame = client.next_frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->codec, protocol::FrameCodec::kJpeg);
+  EXPECT_GT(metric("lightwell_pictures_encoded_total{codec=\"jpeg\"}"), 0.0);
+  EXPECT_EQ(metric("lightwell_pictures_encoded_total{codec=\"h264\"}"), 0.0);
+}
+
 }  // namespace
 }  // namespace lightwell::test

@@ -124,6 +124,16 @@ TEST_F(StreamVideoTest, OthersWhoWatchHaveWhatTheyTake) {
   other.join();
 }
 
+TEST_F(StreamVideoTest, IsCountedByItsCodec) {
+  StreamClient watcher(server_.port(), session_);
+  EXPECT_EQ(watcher.hello({{"role", "viewer"}})["codecs"], json::array({"jpeg", "h264"}));
+  EXPECT_TRUE(comes(FrameCodec::kH264));
+  EXPECT_TRUE(watcher.next_frame());
+  for (const char* name : {"pictures_encoded_total", "encoded_bytes_total", "pictures_sent_total", "sent_bytes_total"})
+    for (const char* codec : {"jpeg", "h264"})
+      EXPECT_GT(metric(std::string("lightwell_") + name + "{codec=\"" + codec + "\"}"), 0.0) << name << codec;
+}
+
 TEST_F(StreamVideoTest, WhoComesLaterBeginsWithAKey) {
   ASSERT_TRUE(comes(FrameCodec::kH264));
   StreamClient watcher(server_.port(), session_);

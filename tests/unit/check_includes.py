@@ -16,7 +16,9 @@ OWN = {
     "renderer/": ["renderer/"],
     "renderer/scene/": ["renderer/scene/", "renderer/error.h", "renderer/check.h"],
     "renderer/scene/gltf/": ["renderer/scene/", "renderer/image_io/", "renderer/error.h", "renderer/check.h"],
-    "renderer/image_io/": ["renderer/image_io/", "renderer/scene/", "renderer/error.h", "renderer/check.h"],
+    "renderer/image_io/": ["renderer/image_io/", "renderer/modules/", "renderer/scene/", "renderer/error.h",
+                           "renderer/check.h"],
+    "renderer/modules/": ["renderer/modules/", "renderer/error.h"],
     "renderer/image_metrics/": ["renderer/image_metrics/", "renderer/error.h", "renderer/check.h"],
     "renderer/gl/": ["renderer/gl/", "renderer/error.h", "renderer/check.h"],
     "renderer/tracing/": ["renderer/tracing/", "renderer/gl/", "renderer/scene/", "renderer/error.h",
@@ -28,7 +30,8 @@ OWN = {
 }
 
 # The renderer's core links GL and GLM alone: nothing of it may include what lives in these targets of their own.
-BESIDE_CORE = ["renderer/scene/gltf/", "renderer/image_io/", "renderer/image_metrics/", "renderer/tracing/embree/"]
+BESIDE_CORE = ["renderer/scene/gltf/", "renderer/image_io/", "renderer/image_metrics/", "renderer/modules/",
+               "renderer/tracing/embree/"]
 
 # Header -> the folders that may include it. Tests may include anything.
 LIBRARIES = [
