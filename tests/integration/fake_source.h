@@ -22,6 +22,7 @@ struct FakeStudio {
   std::atomic<bool> failing = false;
   std::atomic<bool> throwing = false;
   std::atomic<bool> losing = false;        // the device: once
+  std::atomic<bool> lost = false;          // whenever it is asked
   std::atomic<int> sources = 0;            // made
   std::atomic<int> views = 0;              // alive
   std::atomic<int> begun = 0;              // pictures
@@ -69,7 +70,8 @@ class FakeSource : public PictureSource {
       return Error{ErrorKind::kUnwanted, "", "given up"};
     }
     in_a_row_ = 0;
-    if (studio_->losing.exchange(false)) return Error{ErrorKind::kDeviceLost, "", "the fake device is lost"};
+    if (studio_->losing.exchange(false) || studio_->lost)
+      return Error{ErrorKind::kDeviceLost, "", "the fake device is lost"};
     if (studio_->throwing) throw std::runtime_error("the fake source was told to throw");
     if (studio_->failing) return Error{ErrorKind::kUnsupported, "scene", "the fake source was told to fail"};
     ++studio_->pictures;

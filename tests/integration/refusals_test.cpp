@@ -1,12 +1,12 @@
 // Every refusal that the OpenAPI document shows is one that the server gives, in those words.
-#include <regex>
+#include <cstdlib>
 
-#include "protocol/openapi_document.h"
+#include "server/data/database.h"
 #include "server/video/video_encoder.h"
 #include "tests/integration/data_folder.h"
 #include "tests/integration/glb_writer.h"
 #include "tests/integration/malformed_heads.h"
-#include "tests/integration/server_fixture.h"
+#include "tests/integration/refusals_fixture.h"
 #include "tests/unit/rich_gltf.h"
 
 namespace lightwell::test {
@@ -15,46 +15,6 @@ namespace {
 using std::chrono::milliseconds;
 
 const char* const kGlb = "model/gltf-binary";
-
-/// A server of its own for a few questions.
-class Asked {
- public:
-  explicit Asked(ServeOptions options = test_options(), MakePictureSource source = nullptr)
-      : studio(std::make_shared<FakeStudio>()), server(options, source ? std::move(source) : fake_source(studio)) {}
-
-  Asked& until_ready() {
-    server.ready().wait();
-    while (ask("GET", "/v1/scenes").status == 503) std::this_thread::sleep_for(milliseconds(5));
-    return *this;
-  }
-  Answer ask(const std::string& method, const std::string& target, const std::string& body = {},
-             const std::string& type = "application/json", const std::string& fields = {}) const {
-    return test::ask(server.port(), method, target, body, type, fields);
-  }
-  Answer render(const json& change) const {
-    json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}};
-    request.update(change);
-    return ask("POST", "/v1/render", request.dump());
-  }
-  Answer raw(const std::string& text) const {
-    Line line(server.port());
-    line.send(text);
-    return read_answer(line);
-  }
-  std::string session() const {
-    return json::parse(ask("POST", "/v1/sessions", R"({"scene":"cornell","width":8,"height":8})").body)["id"];
-  }
-  static std::string handshake(const std::string& session) {
-    return "GET /v1/sessions/" + session +
-           "/stream HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
-           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
-  }
-
-  std::shared_ptr<FakeStudio> studio;
-  RunningServer server;
-};
-
-using Answers = std::map<std::string, Answer>;  // by the example's name
 
 void ask_what_is_malformed(Answers& answers) {
   Asked asked;
@@ -82,9 +42,60 @@ void ask_what_is_malformed(Answers& answers) {
   answers["misdirected"] = asked.raw("GET / HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n");
   answers["forbidden"] =
       asked.ask("POST", "/v1/sessions", "{}", "application/json", "Origin: https://elsewhere.example\r\n");
+  Line half_a_body(asked.server.port());
+  half_a_body.send(post_text("/v1/render", "{}").substr(0, post_text("/v1/render", "{}").size() - 1));
   answers["timeout"] = asked.raw("GET / HT");
+  answers["body_timeout"] = read_answer(half_a_body);
+  const std::string chunked =
+      "POST /v1/render HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: "
+      "chunked\r\n\r\n";
+  answers["chunk_line"] = asked.raw(chunked + "1;" + std::string(300, 'x'));
+  answers["chunk_line_end"] = asked.raw(chunked + "1\n{");
+  answers["chunk_longer"] = asked.raw(chunked + "1\r\n{}\r\n");
+  std::string trailer;
+  for (int i = 0; i < 100; ++i) trailer += "X-Field-" + std::to_string(i) + ": " + std::string(200, 'x') + "\r\n";
+  answers["trailer"] = asked.raw(chunked + "2\r\n{}\r\n0\r\n" + trailer + "\r\n");
   for (const MalformedHead& head : malformed_heads("/v1/sessions/" + asked.session() + "/stream"))
     answers[head.name] = asked.raw(head.request);
+}
+
+/// In plain words, of a server that speaks TLS; and where a base path was left out.
+void ask_at_the_wrong_place(Answers& answers) {
+  const DataFolder folder;
+  std::filesystem::create_directories(folder.path());
+  ServeOptions options = test_options();
+  options.tls_key = (folder.path() / "key.pem").string();
+  options.tls_certificate = (folder.path() / "certificate.pem").string();
+  const std::string make = "openssl req -x509 -newkey rsa:2048 -nodes -subj /CN=localhost -keyout " + options.tls_key +
+                           " -out " + options.tls_certificate + " 2> /dev/null";
+  ASSERT_EQ(std::system(make.c_str()), 0);
+  answers["tls"] = Asked(options).ask("GET", "/");
+  options = test_options();
+  options.base_path = "/lightwell";
+  answers["moved"] = Asked(options).ask("GET", "/lightwell");
+}
+
+void ask_beside_many(Answers& answers) {
+  {
+    Asked asked;
+    asked.until_ready();
+    std::vector<std::unique_ptr<Line>> uploads;  // none is whole: together they are what the server holds at most
+    const std::string head = "PUT /v1/scenes/s HTTP/1.1\r\nHost: localhost\r\nContent-Type: " + std::string(kGlb) +
+                             "\r\nContent-Length: 4194304\r\n\r\n";
+    const std::string most(4'194'303, 'x');
+    EXPECT_TRUE(comes_true([&] {
+      uploads.push_back(std::make_unique<Line>(asked.server.port()));
+      uploads.back()->send(head + most);
+      return (answers["bodies"] = read_answer(*uploads.back(), false, milliseconds(200))).status != 0;
+    }));
+  }
+  ServeOptions options = test_options();
+  options.limits.max_connections = 1;
+  Asked asked(options);
+  Line first(asked.server.port());
+  first.send("GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(read_answer(first).status, 200);
+  answers["connections"] = asked.raw({});
 }
 
 void ask_what_means_nothing(Answers& answers) {
@@ -112,29 +123,6 @@ void ask_what_means_nothing(Answers& answers) {
   answers["upgrade"] = asked.ask("GET", "/v1/sessions/" + asked.session() + "/stream");
 }
 
-/// Films that cannot go on, for all who would make them wait for pictures, until there is one too many.
-Answer ask_for_many_films(Asked& asked, const std::string& target) {
-  const auto get = [&](Line& line) {
-    line.send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    return read_answer(line, true);
-  };
-  asked.studio->held = true;
-  std::vector<std::unique_ptr<Line>> renders, films;
-  for (int i = 0; i < 8; ++i) {
-    renders.push_back(std::make_unique<Line>(asked.server.port()));
-    renders.back()->send(post_text("/v1/render", R"({"scene":"cornell","width":8,"height":8})"));
-  }
-  EXPECT_TRUE(comes_true(
-      [&] { return asked.ask("GET", "/metrics").body.find("\nlightwell_renders_waiting 8\n") != std::string::npos; }));
-  for (int i = 0; i < 4; ++i) {
-    films.push_back(std::make_unique<Line>(asked.server.port()));
-    EXPECT_EQ(get(*films.back()).status, 200);
-  }
-  Answer answer = asked.ask("GET", target);
-  asked.studio->held = false;
-  return answer;
-}
-
 void ask_another_server(Answers& answers) {
   const DataFolder folder;
   ServeOptions options = test_options();
@@ -144,58 +132,6 @@ void ask_another_server(Answers& answers) {
   answers["elsewhere"] = second.until_ready().ask("GET", "/v1/sessions/" + session);
   EXPECT_TRUE(first.server.drain(test::kPatience));
   answers["just_came"] = second.raw(Asked::handshake(session));
-}
-
-void ask_for_sequences(Answers& answers) {
-  answers["no_folder"] = Asked().until_ready().ask("GET", "/v1/sequences");
-  const DataFolder folder;
-  ServeOptions options = test_options();
-  options.data_dir = folder.path().string();
-  options.limits.max_sequence_frames = 100;
-  options.limits.max_sequence_bytes = 1;
-  Asked asked(options);
-  asked.until_ready();
-  const auto submit = [&](const json& change) {
-    json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 0}};
-    request.update(change);
-    return asked.ask("POST", "/v1/sequences", request.dump());
-  };
-  const std::string done = "/v1/sequences/" + json::parse(submit(json::object()).body)["id"].get<std::string>();
-  while (asked.ask("GET", done + "/archive").status != 200) std::this_thread::sleep_for(milliseconds(10));
-  answers["view"] = asked.ask("GET", done + "/frames/0?view=depth");
-  answers["frame"] = asked.ask("GET", done + "/frames/120");
-  answers["sequence"] = asked.ask("GET", "/v1/sequences/x");
-  answers["disk"] = submit({{"fps", 25}});
-  answers["too_many_frames"] = submit({{"last_frame", 20000}});
-  answers["keyframes"] = submit({{"keyframes", {{{"path", "/x"}, {"times_s", {1, 1}}, {"values", {1, 2}}}}}});
-  asked.ask("DELETE", done);
-  asked.studio->held = true;
-  const std::string slow = "/v1/sequences/" + json::parse(submit({{"last_frame", 9}}).body)["id"].get<std::string>();
-  answers["not_finished"] = asked.ask("GET", slow + "/frames/9");
-  answers["not_done"] = asked.ask("GET", slow + "/archive");
-  asked.ask("DELETE", slow);
-  asked.studio->held = false;
-}
-
-void ask_for_films(Answers& answers) {
-  const DataFolder folder;
-  ServeOptions options = test_options();
-  options.data_dir = folder.path().string();
-  Asked asked(options);
-  asked.until_ready();
-  const auto film_of = [&](const json& change) {
-    json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 0}};
-    request.update(change);
-    const Answer answer = asked.ask("POST", "/v1/sequences", request.dump());
-    return "/v1/sequences/" + json::parse(answer.body).value("id", "") + "/video";
-  };
-  answers["film_of_exr"] = asked.ask("GET", film_of({{"format", "exr"}}));
-  answers["film_size"] = asked.ask("GET", film_of({{"width", 9}}));
-  const std::string film = film_of(json::object());
-  EXPECT_TRUE(comes_true([&] { return asked.ask("HEAD", film).status != 409; }));
-  if (can_encode_video()) answers["films"] = ask_for_many_films(asked, film);
-  options.video = false;
-  answers["no_encoder"] = Asked(options).until_ready().ask("GET", film);
 }
 
 void ask_for_too_much(Answers& answers) {
@@ -283,45 +219,23 @@ void ask_at_the_wrong_time(Answers& answers) {
   drainer.join();
 }
 
-/// With every number and every quoted word replaced: what may differ from case to case.
-std::string shape_of(const std::string& detail) {
-  const std::string words = std::regex_replace(detail, std::regex("\"[^\"]*\""), "\"...\"");
-  return std::regex_replace(words, std::regex("[0-9]+"), "N");
-}
-
-/// All examples of problems in the document, by their names.
-std::map<std::string, json> documented() {
-  std::map<std::string, json> examples;
-  const auto collect = [&](const auto& self, const json& value) -> void {
-    if (!value.is_structured()) return;
-    if (value.is_object() && value.contains("application/problem+json")) {
-      for (const auto& [name, example] : value["application/problem+json"]["examples"].items())
-        EXPECT_TRUE(examples.emplace(name, example["value"]).second) << name << " twice";
-    }
-    for (const auto& member : value) self(self, member);
-  };
-  collect(collect, json::parse(protocol::openapi_document()));
-  return examples;
-}
-
 TEST(Refusals, AreThoseOfTheDocument) {
   Answers answers;
   for (const auto& ask_for :
-       {ask_what_is_malformed, ask_what_means_nothing, ask_another_server, ask_for_sequences, ask_for_films,
-        ask_for_too_much, ask_for_large_textures, ask_too_often, ask_without_leave, ask_at_the_wrong_time})
+       {ask_what_is_malformed, ask_at_the_wrong_place, ask_for_what_is_gone, ask_beside_many, ask_what_means_nothing,
+        ask_another_server, ask_for_sequences, ask_for_films, ask_for_too_much, ask_for_large_textures, ask_too_often,
+        ask_without_leave, ask_at_the_wrong_time})
     ask_for(answers);
   auto examples = documented();
   if (!can_encode_video()) {  // a build without an encoder makes no films of which there could be too many
     EXPECT_EQ(examples.erase("films"), 1u);
   }
-  for (const auto& [name, example] : examples) {
+  std::erase_if(examples, [](const auto& example) { return example.second.contains("x-asked"); });
+  for (const auto& [name, whole] : examples) {
+    const json& example = whole["value"];
     ASSERT_TRUE(answers.contains(name)) << name << " is shown, and not asked for";
     ASSERT_NE(answers[name].status, 0) << name << " was not answered";
-    const json given = problem(answers[name]);
-    EXPECT_EQ(given["status"], example["status"]) << name;
-    EXPECT_EQ(given["title"], example["title"]) << name;
-    EXPECT_EQ(shape_of(given.value("detail", "")), shape_of(example["detail"])) << name;
-    EXPECT_EQ(given.contains("pointer"), example.contains("pointer")) << name << given;
+    expect_problem(name, problem(answers[name]), example);
     const int status = example["status"];
     if (status == 429 || status == 503) {
       EXPECT_FALSE(answers[name].field("Retry-After").empty()) << name;
@@ -332,6 +246,64 @@ TEST(Refusals, AreThoseOfTheDocument) {
   }
   for (const auto& [name, answer] : answers)
     EXPECT_TRUE(examples.contains(name)) << name << " is not in the document: " << answer.body;
+}
+
+TEST(Refusals, ASequenceWhoseSceneIsGoneFailsAsTheDocumentSays) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  auto first = std::make_unique<Asked>(options);
+  first->until_ready();
+  const std::string body = R"({"scene":"cornell","width":8,"height":8,"last_frame":0})";
+  const std::string path =
+      "/v1/sequences/" + json::parse(first->ask("POST", "/v1/sequences", body).body)["id"].get<std::string>();
+  EXPECT_TRUE(comes_true([&] { return first->ask("GET", path + "/archive").status == 200; }));
+  first.reset();
+  // As if its frame were still to be rendered, and of a scene that was uploaded.
+  Database(folder.path() / "sequences.sqlite")
+      .execute("UPDATE sequences SET state = 0, scene_digest = 'of another scene'; UPDATE frames SET state = 0");
+  Asked second(options);
+  second.until_ready();
+  json sequence;
+  EXPECT_TRUE(comes_true([&] {
+    sequence = json::parse(second.ask("GET", path).body);
+    return sequence["state"] == "failed";
+  }));
+  const json document = json::parse(protocol::openapi_document());
+  const json& content = document["paths"]["/v1/sequences/{id}"]["get"]["responses"]["200"]["content"];
+  const json& shown = content["application/json"]["examples"]["failed"]["value"];
+  EXPECT_EQ(sequence["state"], shown["state"]);
+  expect_problem("failed", sequence["problem"], shown["problem"]);
+}
+
+/// What the document says was asked is asked.
+TEST(Refusals, OfValuesAreWhatTheDocumentSays) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  Asked asked(options);
+  asked.until_ready();
+  const std::string session = asked.session();
+  const std::string body = R"({"scene":"cornell","width":8,"height":8,"last_frame":0})";
+  const std::string sequence = json::parse(asked.ask("POST", "/v1/sequences", body).body)["id"];
+  EXPECT_TRUE(comes_true([&] { return asked.ask("GET", "/v1/sequences/" + sequence + "/archive").status == 200; }));
+  int asked_for = 0;
+  for (const auto& [name, example] : documented()) {
+    if (!example.contains("x-asked")) continue;
+    const json& question = example["x-asked"];
+    const std::string operation = question["operation"];
+    const auto space = operation.find(' ');
+    std::string target = operation.substr(space + 1);
+    for (const auto& [hole, id] : {std::pair<std::string, std::string>("{id}", session), {"{sequence}", sequence}})
+      if (const auto at = target.find(hole); at != std::string::npos) target.replace(at, hole.size(), id);
+    const Answer answer = asked.ask(operation.substr(0, space), target,
+                                    question.contains("body") ? question["body"].dump() : std::string());
+    const json given = problem(answer);
+    expect_problem(name, given, example["value"]);
+    EXPECT_EQ(given.value("pointer", ""), example["value"].value("pointer", "")) << name;
+    ++asked_for;
+  }
+  EXPECT_GT(asked_for, 30);
 }
 
 }  // namespace

@@ -1,0 +1,162 @@
+// Every refusal within a stream that the OpenAPI document shows is one that the server gives, in those words.
+#include "server/data/database.h"
+#include "tests/integration/data_folder.h"
+#include "tests/integration/refusals_fixture.h"
+
+namespace lightwell::test {
+namespace {
+
+/// What a stream heard before its end, or before the error that was waited for.
+struct Refused {
+  json error, bye;
+  int code = 0;
+};
+using Refusals = std::map<std::string, Refused>;  // by the name in the document
+
+class Stream {
+ public:
+  explicit Stream(const Asked& asked, const std::string& session = {})
+      : client_(asked.server.port(), session.empty() ? asked.session() : session) {}
+
+  Stream& hello(const json& more = json::object()) {
+    welcome = client_.hello(more);
+    return *this;
+  }
+  StreamClient& client() { return client_; }
+
+  Refused error() { return {client_.next_text("error"), nullptr, 0}; }
+  Refused end() {
+    Refused refused;
+    while (const auto heard = client_.next()) {
+      if (!heard->text.is_object()) continue;
+      if (heard->text["type"] == "error") refused.error = heard->text;
+      if (heard->text["type"] == "bye") refused.bye = heard->text;
+    }
+    refused.code = client_.socket().close_code();
+    return refused;
+  }
+
+  json welcome;
+
+ private:
+  StreamClient client_;
+};
+
+void break_the_rules_of_inputs(Refusals& refused) {
+  ServeOptions options = test_options();
+  options.limits.max_own_looks = 1;
+  Asked asked(options);
+  const std::string session = asked.until_ready().session();
+  Stream driver(asked, session), viewer(asked, session), other(asked, session);
+  driver.hello();
+  viewer.hello({{"role", "viewer"}});
+  other.hello({{"role", "viewer"}});
+  const json look{{"type", "look"}, {"seq", 1}, {"width", 32}, {"height", 32}};
+  driver.client().send(look);
+  refused["look_of_the_driver"] = driver.error();
+  driver.client().input(1, {{"playing", 1}});
+  refused["bad_member"] = driver.error();
+  driver.client().input(1, {{"edits", json::array({{{"op", "remove"}, {"path", "/nodes/99"}}})}});
+  refused["bad_edit"] = driver.error();
+  driver.client().input(1, {{"playing", false}});
+  refused["seq_descends"] = driver.error();
+  viewer.client().input(1, {{"playing", false}});
+  refused["input_of_a_viewer"] = viewer.error();
+  viewer.client().send(look);
+  viewer.client().send(look);  // its number is used up: the first is through
+  viewer.error();
+  other.client().send(look);
+  refused["too_many_looks"] = other.error();
+  asked.studio->throwing = true;
+  driver.client().input(2, {{"time_s", 1}});
+  refused["picture_failed"] = driver.error();
+  asked.studio->throwing = false;
+  asked.studio->lost = true;
+  driver.client().input(3, {{"time_s", 2}});
+  refused["device_lost"] = driver.error();
+  asked.studio->lost = false;
+}
+
+void say_what_nobody_may(Refusals& refused) {
+  Asked asked;
+  asked.until_ready();
+  const auto told = [&](const char* name, const auto& say) {
+    Stream stream(asked);
+    say(stream);
+    refused[name] = stream.end();
+  };
+  const json hello{{"type", "hello"}, {"codecs", {"h264"}}, {"width", 64}, {"height", 64}, {"role", "driver"}};
+  told("no_jpeg", [&](Stream& stream) { stream.client().send(hello); });
+  told("not_a_hello", [](Stream& stream) { stream.client().send({{"type", "ping"}, {"t", 1}}); });
+  told("binary", [](Stream& stream) { stream.client().socket().send_binary("bytes"); });
+  told("not_json", [](Stream& stream) { stream.client().socket().send_text("{{}"); });
+  told("unknown_type", [](Stream& stream) { stream.client().send({{"type", "shout"}}); });
+  told("unknown_frame", [](Stream& stream) { stream.hello().client().ack(1'000'000); });
+  told("no_hello", [](Stream&) {});
+}
+
+void do_not_listen(Refusals& refused) {
+  Asked asked;
+  const std::string session = asked.until_ready().session();
+  Stream lazy(asked, session);
+  refused["not_acknowledged"] = lazy.hello().end();
+  Stream deaf(asked, session);  // whoever is asked faster than it can answer, as messages wait in one batch
+  deaf.hello();
+  std::string pings;
+  const std::string ping = R"({"type":"ping","t":1})";
+  for (int i = 0; i < 20'000; ++i)
+    pings += std::string{'\x81', static_cast<char>(0x80 | ping.size()), 0, 0, 0, 0} + ping;
+  std::thread sender([&] { deaf.client().socket().send_raw(pings); });
+  refused["flood"] = deaf.end();
+  sender.join();
+}
+
+void lose_the_session(Refusals& refused) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  Asked asked(options);
+  asked.until_ready();
+  const std::string session = asked.session();
+  Stream ended(asked), first(asked, session), drained(asked);
+  ended.hello();
+  drained.hello();
+  asked.ask("DELETE", "/v1/sessions/" + ended.welcome["session"].get<std::string>());
+  refused["session_ended"] = ended.end();
+  first.hello();
+  Stream second(asked, session);
+  second.hello({{"resume", first.welcome["resume"]}});
+  refused["resumed"] = first.end();
+  Database database(folder.path() / "sessions.sqlite");
+  Statement(database, "UPDATE sessions SET server = 'another' WHERE id = ?1").bind(session).run();
+  refused["taken_up"] = second.end();
+  std::thread drainer([&] { asked.server.drain(test::kPatience); });
+  refused["draining"] = drained.end();
+  drainer.join();
+}
+
+TEST(Refusals, InAStreamAreThoseOfTheDocument) {
+  Refusals all;
+  for (const auto& provoke : {break_the_rules_of_inputs, say_what_nobody_may, do_not_listen, lose_the_session})
+    provoke(all);
+  const json document = json::parse(protocol::openapi_document());
+  const json& shown = document["paths"]["/v1/sessions/{id}/stream"]["get"]["x-refusals-in-the-stream"];
+  for (const auto& [name, example] : shown.items()) {
+    ASSERT_TRUE(all.contains(name)) << name << " is shown, and not provoked";
+    const Refused& given = all[name];
+    if (example.contains("problem")) {
+      ASSERT_TRUE(given.error.is_object()) << name;
+      expect_problem(name, given.error["problem"], example["problem"]);
+    }
+    EXPECT_EQ(given.error.is_object() && given.error.contains("seq"), example.contains("seq")) << name;
+    EXPECT_EQ(given.code, example.value("code", 0)) << name;
+    if (!example.contains("bye")) continue;
+    ASSERT_TRUE(given.bye.is_object()) << name;
+    EXPECT_EQ(shape_of(given.bye["reason"]), shape_of(example["bye"])) << name;
+    EXPECT_EQ(given.bye["reconnect"], example["reconnect"]) << name;
+  }
+  EXPECT_EQ(all.size(), shown.size());
+}
+
+}  // namespace
+}  // namespace lightwell::test
