@@ -59,11 +59,14 @@ class Viewer:
 
     def next(self, wanted):
         """The first message for which `wanted` holds; None if the stream ends before it."""
-        while (message := self.socket.receive()) is not None:
-            if isinstance(message, bytes):
-                self.socket.send({"type": "ack", "frame": struct.unpack_from("<I", message, 8)[0]})
-            if wanted(message):
-                return message
+        try:
+            while (message := self.socket.receive()) is not None:
+                if isinstance(message, bytes):
+                    self.socket.send({"type": "ack", "frame": struct.unpack_from("<I", message, 8)[0]})
+                if wanted(message):
+                    return message
+        except ConnectionError:  # nobody is there to be told
+            pass
         return None
 
     def frame_of_input(self, seq):
