@@ -69,11 +69,11 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
     return make_camera_block(c, frame.size_px, jitter_px).clip_from_world;
   };
   const glm::mat4 previous_clip_from_world = clip_from_world(frame_number_ > 0 ? previous_camera_ : camera);
+  all_rests_ = clip_from_world(camera) == previous_clip_from_world && !change_.moving;
   const ReconstructedMap indirect = indirect_light(frame, g_buffer, previous_clip_from_world);
   const Picture& composed = compose(frame, g_buffer, direct, indirect, previous_clip_from_world);
-  const bool unchanged =
-      clip_from_world(camera) == previous_clip_from_world && !change_.moving && change_.light_share == 0.0f;
-  const Picture& picture = over_time(frame, composed, g_buffer, previous_clip_from_world, unchanged);
+  const Picture& picture =
+      over_time(frame, composed, g_buffer, previous_clip_from_world, all_rests_ && change_.light_share == 0.0f);
   previous_camera_ = camera;
   ++frame_number_;
   return picture;
@@ -101,7 +101,8 @@ const Picture& RealtimeMethod::compose(FrameContext& frame, const GBuffer& g_buf
   frame.timer.mark("compose");
   // Images in mirrors move by themselves: nothing tells where they were.
   const float kept = change_.moving ? std::min(kept_frames(settings), kReflectionsInMotion) : kept_frames(settings);
-  const PixelSampling sampling{g_buffer, lights_, cache_, indirect, previous_clip_from_world, kept, frame_number_};
+  const PixelSampling sampling{g_buffer, lights_,    cache_,       indirect, previous_clip_from_world,
+                               kept,     all_rests_, frame_number_};
   if (has_rays) {
     pixel_lists_.count();
     unmatched_pass_.run(frame, picture, pixel_lists_.unmatched(), pixel_lists_.unmatched_count(), sampling);

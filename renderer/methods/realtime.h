@@ -62,7 +62,8 @@ class RealtimeMethod {
   HistoryViewPass history_view_pass_;
   InstanceMotion motion_;
   SceneChanges changes_;
-  SceneChange change_;  // in this frame
+  SceneChange change_;      // in this frame
+  bool all_rests_ = false;  // neither the camera nor anything in the scene has moved since the last frame
   std::uint32_t frame_number_ = 0;
   std::uint32_t filled_from_ = 0;                     // when the cache began to be filled
   std::uint32_t moved_in_ = std::uint32_t{0} - 4096;  // when something moved last

@@ -33,6 +33,7 @@ const Picture& RealtimeFront::run(FrameContext& frame, const Picture& behind, co
                                sampling.map,
                                sampling.previous_clip_from_world,
                                sampling.kept_frames,
+                               sampling.all_rests,
                                sampling.frame_number};
   reflections_pass_.run(frame, picture, pixel_lists_.reflecting(), pixel_lists_.reflecting_count(), of_front);
   return picture;

@@ -186,6 +186,7 @@ const Picture& ComposePass::run_over(const BehindClear& behind, const DeviceScen
   gl::Defines defines = gl::joined(gl::joined(scene.brdf_defines(), over), {"TRACED_LIGHT 1", "NO_MAP 1"});
   if (lists) {
     defines.emplace_back("LIST_PIXELS 1");
+    if (scene.has_clear_volumes()) defines.emplace_back("REFRACTED 1");
     lists->bind();
   }
   return draw(defines, over, settings, accumulate);

@@ -47,13 +47,16 @@ vec3 direct_light(ivec2 pixel, GBufferPoint point) {
 layout(binding = UNIT_BEHIND) uniform sampler2D behind;              // the picture without clear surfaces
 layout(binding = UNIT_CLEAR_LAYERS) uniform sampler2D clear_layers;  // see clear_layers.frag
 
-vec4 over_behind(ivec2 pixel, vec4 own) {
-  const vec3 passed = exp(-max(texelFetch(clear_layers, pixel, 0).rgb, 0.0));
+vec4 over_behind(ivec2 pixel, GBufferPoint point, vec4 own) {
+  vec3 passed = exp(-max(texelFetch(clear_layers, pixel, 0).rgb, 0.0));
+#ifdef REFRACTED
+  if (point.brdf.eta != 1.0) passed = vec3(0.0);  // a ray of the pixel's own finds it
+#endif
   const vec4 there = texelFetch(behind, pixel, 0);
   return own + vec4(passed * there.rgb, luminance(passed) * max(there.a - 1.0, 0.0));
 }
 #else
-vec4 over_behind(ivec2 pixel, vec4 own) { return own; }
+vec4 over_behind(ivec2 pixel, GBufferPoint point, vec4 own) { return own; }
 #endif
 
 #ifdef LIST_PIXELS
@@ -117,7 +120,7 @@ vec4 surface_value(ivec2 pixel, GBufferPoint point, vec2 uv) {
   const vec3 indirect = indirect_light(pixel, point, uv);
   const vec3 shown = direct * (view == VIEW_FINAL || view == VIEW_DIRECT ? 1.0 : 0.0) +
                      indirect * (view == VIEW_DIRECT ? 0.0 : 1.0);
-  return over_behind(pixel, vec4(shown, 1.0 + luminance(direct + indirect)));
+  return over_behind(pixel, point, vec4(shown, 1.0 + luminance(direct + indirect)));
 }
 #endif
 

@@ -65,7 +65,7 @@ class ComposePass {
                      const ReconstructedMap& indirect, const PixelLists* lists, std::uint32_t frame_number,
                      const Settings& settings, bool accumulate);
   /// Clear surfaces over what is behind them, with direct light by traced shadow rays; all their pixels are put into
-  /// `lists`, unless it is null.
+  /// `lists`, unless it is null. With lists, what is behind the surfaces of volumes is left to rays of their pixels.
   const Picture& run_over(const BehindClear& behind, const DeviceScene& scene, const GBuffer& g_buffer,
                           const TracedLight& direct, const PixelLists* lists, const Settings& settings,
                           bool accumulate);

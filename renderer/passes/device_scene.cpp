@@ -185,7 +185,7 @@ void DeviceScene::upload_materials(const Scene& scene) {
   constexpr std::size_t kMostMaterials = 65536;           // the G-buffer keeps 16 bits
   if (packed.size() > kMostMaterials) throw std::runtime_error("the scene has more than 65535 materials");
   has_textures_ = has_all_textures_ = has_coverage_ = false;
-  has_clear_ = has_clear_walls_ = has_blend_ = has_smooth_ = false;
+  has_clear_ = has_clear_walls_ = has_clear_volumes_ = has_blend_ = has_smooth_ = has_mirrors_ = false;
   has_lobes_ = std::any_of(scene.materials.begin(), scene.materials.end(), lightwell::has_lobes);
   for (const DeviceMaterial& material : packed) {
     has_textures_ |= material.base_color_texture.slot != 0;
@@ -194,8 +194,10 @@ void DeviceScene::upload_materials(const Scene& scene) {
     has_coverage_ |= (material.flags & (kDeviceMaterialMask | kDeviceMaterialBlend)) != 0;
     has_blend_ |= (material.flags & kDeviceMaterialBlend) != 0;
     has_smooth_ |= may_be_smooth(material);
+    has_mirrors_ |= may_be_smooth(material) && material.metallic > 0.0f;
     has_clear_ |= (material.flags & kDeviceMaterialClear) != 0;
     has_clear_walls_ |= (material.flags & kDeviceMaterialClearWall) != 0;
+    has_clear_volumes_ |= (material.flags & (kDeviceMaterialClear | kDeviceMaterialClearWall)) == kDeviceMaterialClear;
   }
   materials_.reserve(packed.size() * sizeof(DeviceMaterial));
   materials_.upload(std::span<const DeviceMaterial>(packed));

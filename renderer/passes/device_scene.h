@@ -74,8 +74,11 @@ class DeviceScene {
   /// Surfaces that light goes straight on through; the same without a volume behind them.
   /// SMOOTH_SURFACES, where there are some: see shaders/smooth_lobe.glsl.
   const gl::Defines& smooth_defines() const { return smooth_defines_; }
+  bool has_smooth() const { return has_smooth_; }
+  bool has_mirrors() const { return has_mirrors_; }  // smooth metals
   bool has_clear() const { return has_clear_; }
   bool has_clear_walls() const { return has_clear_walls_; }
+  bool has_clear_volumes() const { return has_clear_volumes_; }  // those that have one
   /// Clear surfaces or alpha blends: shadows with a colour (TINTED_SHADOWS).
   bool has_tinted_shadows() const { return has_clear_ || has_blend_; }
   std::uint64_t triangles() const { return triangles_; }
@@ -114,7 +117,8 @@ class DeviceScene {
   GLuint vertex_array_ = 0;
   Draws draws_[3];
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false, is_lambert_ = false;
-  bool has_clear_ = false, has_clear_walls_ = false, has_blend_ = false, has_smooth_ = false;
+  bool has_clear_ = false, has_clear_walls_ = false, has_clear_volumes_ = false, has_mirrors_ = false,
+       has_blend_ = false, has_smooth_ = false;
   gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_, smooth_defines_;
   std::uint64_t triangles_ = 0;
 };

@@ -45,10 +45,12 @@ layout(binding = UNIT_G_DEPTH) uniform sampler2D depth_behind;
 
 #ifdef FILTER_SPECULAR
 // A roughness that holds the normals of the whole pixel, so that a glint smaller than a pixel is not as bright as if it
-// filled it (Tokuyoshi and Kaplanyan 2019).
-float filtered_roughness(float roughness, vec3 across, vec3 down) {
+// filled it (Tokuyoshi and Kaplanyan 2019). Less where a metal is seen at a grazing angle: half of a wide lobe there lies
+// below the surface, and its outlines would be dark.
+float filtered_roughness(float roughness, float metallic, float cos_viewer, vec3 across, vec3 down) {
   const float kPixelVariance = 0.25, kMost = 0.18;
-  const float spread = min(2.0 * kPixelVariance * (dot(across, across) + dot(down, down)), kMost);
+  const float spread = min(2.0 * kPixelVariance * (dot(across, across) + dot(down, down)), kMost) *
+                       mix(1.0, min(4.0 * cos_viewer * cos_viewer, 1.0), metallic);
   const float alpha = roughness * roughness;
   return sqrt(sqrt(min(alpha * alpha + spread, 1.0)));
 }
@@ -86,7 +88,9 @@ void main() {
   const vec3 base_color = unlit ? vec3(0.0) : clamp(surface.base_color.rgb, 0.0, 1.0);
   out_surface = pack_g_surface(surface.normal_ws, geometric_normal, base_color, clamp(surface.metallic, 0.0, 1.0));
 #ifdef FILTER_SPECULAR
-  surface.roughness = filtered_roughness(surface.roughness, seen.normal_across, seen.normal_down);
+  surface.roughness = filtered_roughness(surface.roughness, clamp(surface.metallic, 0.0, 1.0),
+                                         max(dot(surface.normal_ws, to_camera), 0.0), seen.normal_across,
+                                         seen.normal_down);
 #endif
   const uint roughness = uint(clamp(surface.roughness, 0.0, 1.0) * 65535.0 + 0.5);
   out_material = uvec2(seen.material | (roughness << 16), packUnorm2x16(vec2(material.f0_dielectric, material.specular_factor)));

@@ -1,6 +1,7 @@
 #include "renderer/passes/patch_samples.h"
 #include "renderer/passes/clear_samples.h"
 #include "renderer/passes/clear_shadows.h"
+#include "renderer/passes/smooth_paths.h"
 
 #include <algorithm>
 
@@ -43,11 +44,13 @@ struct PatchSamplesPass::Programs {
       : surfaces([&shaders](const gl::Defines& d) { return shaders.compute("passes/surface_samples.comp", d); }),
         hits([&shaders](const gl::Defines& d) { return shaders.compute("passes/sample_hits.comp", d); }),
         clear_shadows(shaders, buffers),
-        clear_samples(shaders, buffers) {}
+        clear_samples(shaders, buffers),
+        smooth_paths(shaders, buffers) {}
   gl::Variants<SurfaceSamplesProgram> surfaces;
   gl::Variants<SampleHitsProgram> hits;
   ClearShadowsPass clear_shadows;
   ClearSamplesPass clear_samples;
+  SmoothPathsPass smooth_paths;
 };
 
 PatchSamplesPass::PatchSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
@@ -86,6 +89,8 @@ const PatchSamples& PatchSamplesPass::run(FrameContext& frame, const GBuffer& g_
   sample_surfaces(frame, g_buffer, lights, grid);
   frame.timer.mark("directions");
   frame.tracer.closest_hit(s.first.rays, grid.samples(), s.first.hits);
+  programs_->smooth_paths.run(frame, SmoothPathsPass::Kind::kMirrors, s.first, grid.samples(), grid.samples(),
+                              grid.frame_number);
   programs_->clear_samples.run(frame, s.first, grid.samples(), grid.frame_number);
   frame.rays += grid.samples();
   frame.timer.mark("trace");
@@ -130,7 +135,10 @@ void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& li
   gl::Defines defines = gl::joined(gl::joined(frame.scene.texture_defines(), frame.scene.brdf_defines()),
                                    gl::joined(frame.scene.environment_defines(), lights.defines()));
   defines = gl::joined(defines, ClearSamplesPass::defines(frame.scene));
-  if (meeting.first) defines.emplace_back("FIRST_HITS 1");
+  if (meeting.first) {
+    defines.emplace_back("FIRST_HITS 1");
+    defines = gl::joined(defines, SmoothPathsPass::defines(frame.scene, SmoothPathsPass::Kind::kMirrors));
+  }
   SampleHitsProgram& variant = programs_->hits.with(defines);
   variant.grid.set(grid);
   variant.lights.set(lights.counts());
@@ -139,6 +147,7 @@ void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& li
   variant.path_phase = meeting.phase;
   variant.first_next = meeting.first_onward;
   variant.most_next = meeting.most_onward;
+  variant.most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
   const int bounce = meeting.first ? 1 : 2;
   variant.lamps_light_hits = frame.settings.bounces > bounce ? 1 : 0;
   variant.cache_lights_hits = frame.settings.bounces > bounce ? 1 : 0;

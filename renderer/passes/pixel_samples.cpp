@@ -44,6 +44,7 @@ PixelSamplesPass::Light::Light(const gl::ProgramPtr& p)
       lamps_sampled(p, "lamps_sampled"),
       share(p, "share"),
       kept_frames(p, "kept_frames"),
+      all_rests(p, "all_rests"),
       previous_clip_from_world(p, "previous_clip_from_world") {}
 
 PixelSamplesPass::PixelSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers, Kind kind)
@@ -54,6 +55,7 @@ PixelSamplesPass::PixelSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buf
       light_([&shaders](const gl::Defines& d) { return shaders.compute("passes/pixel_light.comp", d); }),
       clear_shadows_(shaders, buffers),
       clear_samples_(shaders, buffers),
+      smooth_paths_(shaders, buffers),
       wave_(buffers),
       reflections_("reflections", 0),
       reflections_before_("reflections before", 0) {}
@@ -64,7 +66,7 @@ void PixelSamplesPass::run(FrameContext& frame, const Picture& picture, const gl
   PatchGrid grid;
   grid.map_size_px = {static_cast<int>(count), 1};
   grid.picture_size_px = frame.size_px;
-  grid.rays_per_texel = kind_ == Kind::kUnmatched ? kRaysOfUnmatched : 1;
+  grid.rays_per_texel = kind_ == Kind::kUnmatched ? kRaysOfUnmatched : refracts(frame.scene) ? 2 : 1;
   grid.frame_number = sampling.frame_number;
   grid.seed = frame.settings.seed;
   wave_.resize(grid.samples(), grid.samples() + grid.texels(), 1);
@@ -72,9 +74,11 @@ void PixelSamplesPass::run(FrameContext& frame, const Picture& picture, const gl
   list_texels_.bind(UNIT_PIXEL_LIST);
   sample_surfaces(frame, sampling, grid);
   frame.tracer.closest_hit(wave_.rays, grid.samples(), wave_.hits);
+  if (kind_ != Kind::kUnmatched)
+    smooth_paths_.run(frame, SmoothPathsPass::Kind::kImages, wave_, grid.samples(), grid.texels(), grid.frame_number);
   clear_samples_.run(frame, wave_, grid.samples(), grid.frame_number);
   meet_hits(frame, sampling, grid);
-  const std::uint32_t shadow_rays = grid.samples() + (samples_lamps(sampling.lights) ? grid.texels() : 0);
+  const std::uint32_t shadow_rays = grid.samples() + (sampling.lights.has_sized() ? grid.texels() : 0);
   clear_shadows_.run(frame, wave_.shadow_rays, shadow_rays, wave_.visible,
                      {wave_.light, 1, 2, grid.samples(), 2 * grid.samples()}, false);
   frame.rays += grid.samples() + shadow_rays;
@@ -82,10 +86,15 @@ void PixelSamplesPass::run(FrameContext& frame, const Picture& picture, const gl
   frame.timer.mark(stage_of(kind_));
 }
 
+gl::Defines PixelSamplesPass::defines(const DeviceScene& scene) const {
+  return refracts(scene) ? gl::joined(defines_, {"REFRACTED 1"}) : defines_;
+}
+
 void PixelSamplesPass::sample_surfaces(const FrameContext& frame, const PixelSampling& sampling,
                                        const PatchGrid& grid) {
-  gl::Defines defines = gl::joined(gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines()), defines_);
-  if (samples_lamps(sampling.lights)) {
+  gl::Defines defines =
+      gl::joined(gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines()), this->defines(frame.scene));
+  if (sampling.lights.has_sized()) {
     defines = gl::joined(gl::joined(defines, frame.scene.texture_defines()), frame.scene.environment_defines());
     defines.emplace_back("HAS_SIZED_LIGHTS 1");
     defines = gl::joined(defines, sampling.lights.sized_defines());
@@ -107,8 +116,10 @@ void PixelSamplesPass::sample_surfaces(const FrameContext& frame, const PixelSam
 void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid) {
   gl::Defines defines = gl::joined(gl::joined(frame.scene.texture_defines(), frame.scene.brdf_defines()),
                                    gl::joined(frame.scene.environment_defines(), sampling.lights.defines()));
-  defines = gl::joined(gl::joined(defines, defines_), ClearSamplesPass::defines(frame.scene));
+  defines = gl::joined(gl::joined(defines, this->defines(frame.scene)), ClearSamplesPass::defines(frame.scene));
   defines.emplace_back("FIRST_HITS 1");
+  if (kind_ != Kind::kUnmatched)
+    defines = gl::joined(defines, SmoothPathsPass::defines(frame.scene, SmoothPathsPass::Kind::kImages));
   SampleHitsProgram& variant = hits_.with(defines);
   variant.grid.set(grid);
   variant.lights.set(sampling.lights.counts());
@@ -116,6 +127,7 @@ void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling&
   variant.path_stride = 1;
   variant.path_phase = 1;
   const int beyond = frame.settings.bounces > 1 ? 1 : 0;
+  variant.most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
   variant.lamps_light_hits = beyond;
   variant.cache_lights_hits = beyond;
   sampling.cache.bind_for_lookups(variant.cache);
@@ -131,7 +143,8 @@ void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling&
 
 void PixelSamplesPass::add_light(const FrameContext& frame, const Picture& picture, const PixelSampling& sampling,
                                  const PatchGrid& grid) {
-  gl::Defines defines = gl::joined(gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines()), defines_);
+  gl::Defines defines =
+      gl::joined(gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines()), this->defines(frame.scene));
   defines.emplace_back("JOINT_UPSCALE 1");
   if (kind_ != Kind::kUnmatched) {
     if (sampling.g_buffer.has_motion) defines.emplace_back("MOTION 1");
@@ -148,9 +161,10 @@ void PixelSamplesPass::add_light(const FrameContext& frame, const Picture& pictu
   variant.grid.set(grid);
   variant.sample_count = grid.samples();
   variant.pixel_count = grid.texels();
-  variant.lamps_sampled = samples_lamps(sampling.lights) ? 1 : 0;
+  variant.lamps_sampled = sampling.lights.has_sized() ? 1 : 0;
   variant.share = 1.0f / static_cast<float>(picture.accumulated);
   variant.kept_frames = sampling.kept_frames;
+  variant.all_rests = sampling.all_rests ? 1.0f : 0.0f;
   variant.previous_clip_from_world = sampling.previous_clip_from_world;
   sampling.g_buffer.bind();
   light_texels_.attach(wave_.light);

@@ -13,6 +13,7 @@
 #include "renderer/passes/radiance_cache.h"
 #include "renderer/passes/reconstruction.h"
 #include "renderer/passes/sample_wave.h"
+#include "renderer/passes/smooth_paths.h"
 
 namespace lightwell {
 
@@ -24,6 +25,7 @@ struct PixelSampling {
   const ReconstructedMap& map;
   glm::mat4 previous_clip_from_world;
   float kept_frames = 0.0f;  // that reflections found before count for at most
+  bool all_rests = false;    // neither camera nor scene has moved since the frame before
   std::uint32_t frame_number = 0;
 };
 
@@ -31,7 +33,7 @@ class PixelSamplesPass {
  public:
   enum class Kind {
     kReflections,    // what smooth surfaces mirror
-    kClearSurfaces,  // all that clear surfaces send back
+    kClearSurfaces,  // all that clear surfaces send back, and what is seen through those of volumes
     kUnmatched       // all else, in place of what the map gave
   };
 
@@ -49,10 +51,11 @@ class PixelSamplesPass {
     PatchGridUniforms grid;
     gl::Uniform<std::uint32_t> sample_count, pixel_count;
     gl::Uniform<int> lamps_sampled;
-    gl::Uniform<float> share, kept_frames;
+    gl::Uniform<float> share, kept_frames, all_rests;
     gl::Uniform<glm::mat4> previous_clip_from_world;
   };
-  bool samples_lamps(const LightTable& lights) const { return kind_ == Kind::kUnmatched && lights.has_sized(); }
+  bool refracts(const DeviceScene& scene) const { return kind_ == Kind::kClearSurfaces && scene.has_clear_volumes(); }
+  gl::Defines defines(const DeviceScene& scene) const;
   void sample_surfaces(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid);
   void meet_hits(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid);
   void add_light(const FrameContext& frame, const Picture& picture, const PixelSampling& sampling,
@@ -65,6 +68,7 @@ class PixelSamplesPass {
   gl::Variants<Light> light_;
   ClearShadowsPass clear_shadows_;
   ClearSamplesPass clear_samples_;
+  SmoothPathsPass smooth_paths_;
   SampleWave wave_;
   gl::BufferTexture list_texels_{"listed pixels", GL_R32UI};
   gl::BufferTexture state_texels_{"sample states", GL_RGBA32F}, light_texels_{"light of samples", GL_RGBA32F};

@@ -1,12 +1,14 @@
 // What leaves the hits of the occlusion map: their emission, a sample of the lights that waits for its shadow ray, and light
 // that has bounced before, from the radiance cache. Some hits' paths go on by one more ray, sampled by the cosine: what
 // comes along them fills the cache. FIRST_HITS: along the rays from pixels; else along those from hits.
+// SMOOTH_PATHS, MIRRORS_ALONE: rays may have come by way of mirrors, see smooth_paths.comp.
 // CLEAR_SURFACES: rays may have come through some, see clear_samples.comp.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
+#define WIDENED_LOBE
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/scene_data.glsl"
@@ -22,6 +24,10 @@ layout(local_size_x = 64) in;
 #include "shaders/next_event.glsl"
 #include "shaders/fetch_hit.glsl"
 #include "shaders/patch_samples.glsl"
+#ifdef SMOOTH_PATHS
+#include "shaders/smooth_lobe.glsl"
+#include "shaders/smooth_path.glsl"
+#endif
 #define CELL_INSERTION
 #include "shaders/radiance_cache.glsl"
 
@@ -44,6 +50,9 @@ uniform uint first_next;      // the first place for a path that goes on, and ho
 uniform uint most_next;
 uniform int lamps_light_hits;  // 0: punctual lights alone, in the last bounce
 uniform int cache_lights_hits; // 0: not in the last bounces
+#ifdef SMOOTH_PATHS
+uniform uint most_bounces;     // by which it is known where those are
+#endif
 
 const float kFootprintPerMetre = 0.1;  // a diffuse ray's cone: a fraction of its solid angle, for texture levels
 const float kSideOverDistance = 0.5;   // of a cell over the length of the ray that came to it
@@ -61,6 +70,32 @@ struct PathVertex {
   float ray_pdf;     // times how many such rays there are
   float light_share; // of the density of table lights in the sampling that the rays compete with
 };
+
+#ifdef SMOOTH_PATHS
+bool lamps_light(PathVertex at) { return bounces_of(at.ray.t_max) < most_bounces; }
+bool cache_lights(PathVertex at) { return max(bounces_of(at.ray.t_max), 1u) < most_bounces; }
+#else
+bool lamps_light(PathVertex at) { return lamps_light_hits == 1; }
+bool cache_lights(PathVertex at) { return cache_lights_hits == 1; }
+#endif
+
+// A metal that has left to other rays all but the lamps that it mirrors.
+bool is_for_lamps_alone(PathVertex at) {
+#ifdef MIRRORS_ALONE
+  return is_mirror_dropped(at.ray.t_max);
+#else
+  return false;
+#endif
+}
+
+// Of the volume between what the ray passed last and its hit.
+vec3 absorbed_on_the_way(PathVertex at, Hit hit, HitPoint point) {
+#ifdef SMOOTH_PATHS
+  return pow(point.medium_transmittance, vec3(max(hit.t - at.ray.t_min, 0.0) / max(hit.t, 1e-20)));
+#else
+  return point.medium_transmittance;
+#endif
+}
 
 vec3 light_of_miss(PathVertex at) {
   float weight = 1.0;
@@ -106,10 +141,11 @@ void sample_lights(inout Step next, PathVertex at, Hit hit, HitPoint point, mat3
 #if defined(LIGHTS_PUNCTUAL) || defined(LIGHTS_TRIANGLES) || defined(LIGHTS_ENVIRONMENT)
   const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kLight));
   const vec2 u_choice = sobol_2d(at.number, decision_seed(at.seed, kLightChoice));
-  const TableSample lamp = sample_light(point.position_ws, lamps_light_hits == 0, u, u_choice.x, u_choice.y);
+  const TableSample lamp = sample_light(point.position_ws, !lamps_light(at), u, u_choice.x, u_choice.y);
   const vec3 in_direction = lamp.to_light_ws * frame;
   // The rays that may find the same light are sampled by the cosine.
-  const float weight = lamp.pdf > 0.0 ? mis_weight(lamp.pdf, in_direction.z / kPi) : 1.0;
+  float weight = lamp.pdf > 0.0 ? mis_weight(lamp.pdf, in_direction.z / kPi) : 1.0;
+  if (is_for_lamps_alone(at)) weight = 1.0;
   if (is_above(point, in_direction, lamp.to_light_ws))
     next.waiting = brdf_times_cosine(point.brdf, -at.ray.direction_ws * frame, in_direction) * lamp.value * weight;
   if (greatest(next.waiting) > 0.0)
@@ -120,7 +156,16 @@ void sample_lights(inout Step next, PathVertex at, Hit hit, HitPoint point, mat3
 
 // What the surface sends back of light that arrives from everywhere alike.
 vec3 reflectance(PathVertex at, HitPoint point) {
-  return directional_albedo(point.brdf, max(dot(point.surface.normal_ws, -at.ray.direction_ws), 0.0));
+  const float cosine = max(dot(point.surface.normal_ws, -at.ray.direction_ws), 0.0);
+  const vec3 all = directional_albedo(point.brdf, cosine);
+#ifdef MULTISCATTER
+  return all;
+#else
+  // The base gets what the interface leaves at the more grazing of both directions; over all that come, about so.
+  const float kMeanCosine = 0.6;
+  const float taken = most_reflected(point.brdf, min(cosine, kMeanCosine));
+  return max(all - point.brdf.diffuse_albedo * (taken - point.brdf.f0_dielectric), vec3(0.0));
+#endif
 }
 
 Cells cells_at(PathVertex at, Hit hit, HitPoint point, bool fills) {
@@ -189,6 +234,9 @@ Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
 #ifdef CLEAR_SURFACES
   if ((point.material_flags & kMaterialClear) != 0u) point.brdf.transmission_color = vec3(0.0);
 #endif
+#if defined(SMOOTH_PATHS) && !defined(MIRRORS_ALONE)
+  if (is_mirror_dropped(at.ray.t_max)) point.brdf = brdf_of_map(point.brdf);
+#endif
   const mat3 frame = frame_around(point.surface.normal_ws);
   const vec3 reflected_share = reflectance(at, point);
   point.brdf = brdf_in_frame(point.brdf, frame);
@@ -197,11 +245,11 @@ Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
   const Cells cells = cells_at(at, hit, point, goes_on && lit);
   const CellValue bounced = light_of(cells);
 #ifdef FIRST_HITS
-  next.own_path = goes_on && bounced.samples < kFewSamples;
+  next.own_path = goes_on && bounced.samples < kFewSamples && !is_for_lamps_alone(at);
 #endif
   next.known = emission_of(at, hit, point);
-  if (cache_lights_hits == 1 && !next.own_path) next.known += bounced.light * reflected_share;
-  const vec3 arriving = lit ? point.medium_transmittance : vec3(0.0);
+  if (cache_lights(at) && !next.own_path && !is_for_lamps_alone(at)) next.known += bounced.light * reflected_share;
+  const vec3 arriving = lit ? absorbed_on_the_way(at, hit, point) : vec3(0.0);
   next.known *= arriving;
   next.waiting *= arriving;
   next.distance_m = hit.t;

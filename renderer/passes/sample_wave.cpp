@@ -31,6 +31,7 @@ SampleHitsProgram::SampleHitsProgram(const gl::ProgramPtr& p)
       path_phase(p, "path_phase"),
       first_next(p, "first_next"),
       most_next(p, "most_next"),
+      most_bounces(p, "most_bounces"),
       lamps_light_hits(p, "lamps_light_hits"),
       cache_lights_hits(p, "cache_lights_hits") {}
 

@@ -39,7 +39,7 @@ struct SampleHitsProgram {
   PatchGridUniforms grid;
   LightTableUniforms lights;
   RadianceCacheUniforms cache;
-  gl::Uniform<std::uint32_t> path_count, path_stride, path_phase, first_next, most_next;
+  gl::Uniform<std::uint32_t> path_count, path_stride, path_phase, first_next, most_next, most_bounces;
   gl::Uniform<int> lamps_light_hits, cache_lights_hits;
 };
 

@@ -1,7 +1,8 @@
 // From one real pixel of each patch: rays sampled by the BRDF, each with what its light counts for (f cos(theta) / pdf over
 // the directional albedo), and a sample of the lights that have a size, weighted against those rays (Veach 1997).
 // HAS_SIZED_LIGHTS: there are such lights in the table.
-// REFLECTIONS: of smooth surfaces alone; no other strategy looks for the lights that these rays find.
+// REFLECTIONS: of smooth surfaces alone.
+// REFRACTED: a pixel's second ray is of the light that has passed the surface of a volume.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -20,6 +21,7 @@ layout(local_size_x = 64) in;
 #include "shaders/ray.glsl"
 #include "shaders/patch_samples.glsl"
 #include "shaders/smooth_lobe.glsl"
+#include "shaders/smooth_path.glsl"
 #ifdef HAS_SIZED_LIGHTS
 #include "shaders/lights.glsl"
 #include "shaders/environment.glsl"
@@ -34,8 +36,6 @@ layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays
 layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
 
 uniform uint sample_count;  // texels * rays_per_texel
-
-const float kNoOtherStrategy = 1e30;  // as a density: it outweighs any other
 
 struct SurfaceFrame {
   GBufferPoint point;
@@ -66,13 +66,30 @@ void sample_direction(uint slot, uint ray, uint texel_seed, SurfaceFrame at) {
   const vec3 value = brdf_times_cosine(at.brdf, at.out_direction, in_direction) / at.albedo;
   rays[2u * slot] = vec4(lifted_origin(at, in_direction.z < 0.0), 0.0);
   rays[2u * slot + 1u] = vec4(in_ws, active_ray ? 1e30 : -1.0);
-#ifdef REFLECTIONS
-  const float density = kNoOtherStrategy;
+#ifdef REFRACTED
+  const float of_all = float(rays_per_texel);
 #else
-  const float density = pdf;
+  const float of_all = 1.0;
 #endif
-  states[slot] = vec4(active_ray ? value / max(pdf, 1e-20) : vec3(0.0), density);
+  states[slot] = vec4(active_ray ? value * of_all / max(pdf, 1e-20) : vec3(0.0), pdf / of_all);
 }
+
+#ifdef REFRACTED
+// Both rays count whole. No sample of the lights finds what comes through a volume.
+void sample_refraction(uint slot, uint texel_seed, SurfaceFrame at, Brdf through) {
+  const vec2 u = sobol_2d(sample_number(0u), decision_seed(texel_seed, kDecisionLamp) ^ 0x5bd1e995u);
+  const vec3 in_direction = sample_transmission(through, at.out_direction, u);
+  const vec3 in_ws = normalize(at.frame * in_direction);
+  const float share = lobe_probabilities(through, at.out_direction).w;
+  const float pdf = share > 0.0 ? brdf_pdf(through, at.out_direction, in_direction) / share : 0.0;
+  const bool active_ray = at.point.valid && through.eta != 1.0 && in_direction.z < 0.0 && pdf > 0.0 &&
+                          sides_agree(at, in_direction, in_ws);
+  const vec3 value = brdf_times_cosine(through, at.out_direction, in_direction) / at.albedo;
+  rays[2u * slot] = vec4(lifted_origin(at, true), 0.0);
+  rays[2u * slot + 1u] = vec4(in_ws, active_ray ? kFarReach : -1.0);
+  states[slot] = vec4(active_ray ? value * float(rays_per_texel) / max(pdf, 1e-20) : vec3(0.0), kNoOtherStrategy);
+}
+#endif
 
 #ifdef HAS_SIZED_LIGHTS
 // Its place among the shadow rays is behind those of the hits.
@@ -82,7 +99,10 @@ void sample_lamp(uint texel_index, uint texel_seed, SurfaceFrame at) {
   const vec2 u_choice = sobol_2d(frame_number, decision_seed(texel_seed, kDecisionLampChoice));
   const TableSample lamp = sample_sized_light(at.point.position_ws, u, u_choice.x, u_choice.y);
   const vec3 in_direction = lamp.to_light_ws * at.frame;
-  const float rays_pdf = brdf_pdf(at.brdf, at.out_direction, in_direction) * float(rays_per_texel);
+  float rays_pdf = brdf_pdf(at.brdf, at.out_direction, in_direction);
+#ifndef REFRACTED
+  rays_pdf *= float(rays_per_texel);
+#endif
   vec3 value = vec3(0.0);
   if (at.point.valid && lamp.pdf > 0.0 && sides_agree(at, in_direction, lamp.to_light_ws))
     value = brdf_times_cosine(at.brdf, at.out_direction, in_direction) / at.albedo * lamp.value *
@@ -116,7 +136,14 @@ void main() {
   at.brdf = brdf_in_frame(at.point.brdf, at.frame);
   at.albedo = max(directional_albedo(at.point.brdf, max(at.out_direction.z, 0.0)), vec3(1e-4));
   const uint seed_of_texel = texel_seed(texel);
+#ifdef REFRACTED
+  const Brdf through = at.brdf;
+  at.brdf.transmission_color = vec3(0.0);
+  if (slot >= texels) sample_refraction(slot, seed_of_texel, at, through);
+  else sample_direction(slot, 0u, seed_of_texel, at);
+#else
   sample_direction(slot, slot / texels, seed_of_texel, at);
+#endif
 #ifdef HAS_SIZED_LIGHTS
   if (slot < texels) sample_lamp(texel_index, seed_of_texel, at);
 #endif

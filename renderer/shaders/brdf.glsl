@@ -6,6 +6,7 @@
 //   that the interface leaves over (Kelemen and Szirmay-Kalos 2001); needs the table of passes/brdf_table.comp.
 // LAMBERT_ONLY: for scenes whose materials are all without a specular lobe, in the frame of the normal.
 // HAS_LOBES: the lobes of glTF's extensions, see shaders/brdf_lobes.glsl.
+// WIDENED_LOBE: the specular lobe may be made wider than the interface is rough, whose base gets what it did.
 #include "shaders/microfacet.glsl"
 
 // What the BRDF needs to know of a surface point.
@@ -16,6 +17,9 @@ struct Brdf {
   float f0_dielectric;    // what the dielectric's interface takes from what lies below it
   float f90_dielectric;
   float alpha;            // GGX, roughness squared
+#ifdef WIDENED_LOBE
+  float interface_alpha;  // by which light gets to the diffuse base
+#endif
 #ifdef MULTISCATTER
   vec3 mean_dielectric;   // cosine-weighted mean of the Fresnel reflectance
   vec3 mean_metal;
@@ -45,6 +49,9 @@ Brdf make_brdf(vec3 base_color, float metallic, float roughness, vec3 f0_dielect
   brdf.f0 = mix(f0, base_color, metallic);
   brdf.f90 = mix(specular_factor, 1.0, metallic);
   brdf.alpha = alpha_from_roughness(roughness);
+#ifdef WIDENED_LOBE
+  brdf.interface_alpha = brdf.alpha;
+#endif
 #ifdef MULTISCATTER
   brdf.mean_dielectric = mix(f0, vec3(specular_factor), kSchlickMean);
   brdf.mean_metal = mix(base_color, vec3(1.0), kSchlickMean);
@@ -108,7 +115,11 @@ float fresnel_weight(Brdf brdf, float cos_difference) {
 // that roughness lifts, fitted from below to the integral of the specular lobe. 1 less it at the more grazing of both
 // directions is reciprocal and keeps the sum of both lobes within 1.
 float most_reflected(Brdf brdf, float cosine) {
+#ifdef WIDENED_LOBE
+  const float roughness = sqrt(brdf.interface_alpha);
+#else
   const float roughness = sqrt(brdf.alpha);
+#endif
   const float least = max((0.75 - 0.12 * roughness) * roughness - 0.09, 0.0);
   const float lifted = least + (1.0 + (0.6 * roughness - 1.3) * roughness) * cosine;
   return mix(brdf.f0_dielectric, brdf.f90_dielectric, schlick_weight(lifted));

@@ -1,4 +1,5 @@
 // Reading the G-buffer; the C++ side is renderer/passes/g_buffer.h. Needs bindings, packing, brdf, camera.
+// REFRACTED: what passes the surface of a volume is not shown by another layer, but found by a ray.
 
 layout(binding = UNIT_G_SURFACE) uniform usampler2D g_surface;    // normal, geometric normal, base colour, metallic
 layout(binding = UNIT_G_MATERIAL) uniform usampler2D g_material;  // material | roughness << 16, f0 and specular factor of the dielectric
@@ -43,7 +44,12 @@ GBufferPoint g_buffer_point(ivec2 pixel) {
   const uvec4 lobes = texelFetch(g_lobes, pixel, 0);
   point.brdf = with_lobes(point.brdf, base_color, blue_metallic.y, unpack_g_lobes(lobes, dielectric),
                           max(g_lobes_eta(lobes), 1e-3));
-  if ((lobes.w & kNothingPasses) != 0u) point.brdf.transmission_color = vec3(0.0);
+#ifdef REFRACTED
+  const bool shown_elsewhere = (lobes.w & kNothingPasses) != 0u && point.brdf.eta == 1.0;
+#else
+  const bool shown_elsewhere = (lobes.w & kNothingPasses) != 0u;
+#endif
+  if (shown_elsewhere) point.brdf.transmission_color = vec3(0.0);
 #endif
   return point;
 }

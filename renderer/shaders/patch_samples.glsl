@@ -30,7 +30,11 @@ ivec2 sampled_pixel(ivec2 texel) {
 }
 #endif
 
+#ifdef REFRACTED
+uint sample_number(uint ray) { return frame_number; }  // a pixel's rays are of different light
+#else
 uint sample_number(uint ray) { return frame_number * rays_per_texel + ray; }
+#endif
 
 // Every decision of a texel's paths has a Sobol sequence of its own.
 const uint kDecisionRay = 1u, kDecisionLobe = 2u, kDecisionLamp = 3u, kDecisionLampChoice = 4u;
