@@ -6,10 +6,12 @@ namespace lightwell {
 
 namespace {
 
-// From here on rays are quicker, measured with llvmpipe and Embree on four cores: a triangle costs the rasteriser about
-// as much as a ray costs the tracer, but of the rasteriser's pixels none is for nothing. Fewer triangles are drawn in
-// the time that it takes to hand the work from one to the other.
+// From here on rays are quicker, measured with llvmpipe and Embree on four cores and 512x512 pixels: the camera's view
+// is found in the same time either way at 0.15 triangles a pixel, a shadow map at 0.3. Fewer triangles than the second
+// number are drawn in 3 ms, which leaves nothing to win.
 constexpr double kTrianglesPerPixel = 0.25, kFewestTriangles = 50'000.0;
+
+constexpr double kMostPixels = 1 << 24;  // hits of more would take over 320 MiB
 
 constexpr float kFarthest = 1e30f;
 
@@ -18,6 +20,7 @@ constexpr float kFarthest = 1e30f;
 ViewTracer* ViewTracing::for_view(const DeviceScene& scene, glm::ivec2 size_px) const {
   if (!tracer || scene.has_coverage() || scene.has_clear()) return nullptr;
   const double pixels = static_cast<double>(size_px.x) * static_cast<double>(size_px.y);
+  if (pixels > kMostPixels) return nullptr;
   const double most_drawn = std::max(kFewestTriangles, kTrianglesPerPixel * pixels);
   return always || static_cast<double>(scene.triangles()) > most_drawn ? tracer : nullptr;
 }

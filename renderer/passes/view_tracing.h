@@ -14,7 +14,8 @@ struct ViewTracing {
   bool always = false;           // wherever it can be, not just where it is quicker
 
   /// The tracer for a view of the scene with so many pixels; null where that is to be rasterised: where triangles are
-  /// too few, or where some surfaces hide only part of what is behind them (alpha masks and blends, clear surfaces).
+  /// too few or pixels too many (16 million), or where some surfaces hide only part of what is behind them (alpha masks
+  /// and blends, clear surfaces).
   ViewTracer* for_view(const DeviceScene& scene, glm::ivec2 size_px) const;
 };
 
