@@ -156,6 +156,7 @@ struct Renderer::State {
         triangle_groups([options, software = context->device().software] { return make_tracer(options, software); }),
         buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
         view_tracing(choose_view_tracing(options.seen_by, *tracer, context->device().software)),
+        device_scene(buffers),
         camera("camera", sizeof(CameraBlock)) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

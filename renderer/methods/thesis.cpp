@@ -10,6 +10,21 @@ namespace {
 // Records of the occlusion map at once, and candidates of patches: 32 to 96 MiB on the device, whatever the settings.
 constexpr std::uint32_t kMostRecords = 1u << 21, kMostCandidates = 1u << 22;
 
+// Candidates at once where there are no records: how many patches there are is known by then.
+std::uint32_t directions_per_host_batch(std::uint32_t patches, const Settings& settings) {
+  const std::uint32_t most =
+      kMostCandidates / 4 / std::max(patches * static_cast<std::uint32_t>(settings.triangle_groups), 1u);
+  return std::clamp(most, 1u, static_cast<std::uint32_t>(settings.samples));
+}
+
+// Whether the processor scales up and gathers: views of records need records, and so do further bounces.
+bool gathers_on_host(const FrameContext& frame) {
+  const Settings& settings = frame.settings;
+  return frame.tracer.host() != nullptr && have_candidates(settings) && settings.bounces == 1 &&
+         settings.estimator == Estimator::kCorrected && HostGatherPass::knows(frame.scene) &&
+         !MapViewPass::shows(settings.view);
+}
+
 // Clear surfaces take four times as much for each record.
 std::uint32_t directions_per_batch(const IndirectMapGrid& grid, const Settings& settings, bool clear_surfaces) {
   const std::uint32_t by_records = (clear_surfaces ? kMostRecords / 4 : kMostRecords) / grid.most_slots();
@@ -123,16 +138,21 @@ void ThesisMethod::resize(const FrameContext& frame, const IndirectMapGrid& grid
   shadow_maps_pass_.resize(frame.settings.shadow_size, frame.settings.shadow_filter,
                            ShadowMapsPass::layers_for(frame.pose));
   compose_pass_.resize(g_buffer_pass_.g_buffer().depth);
-  const std::uint32_t batch = directions_per_batch(grid, frame.settings, frame.scene.has_clear());
-  if (frame.scene.has_clear()) clear_hits_pass_.resize(grid.most_slots() * batch);
   active_blocks_pass_.resize(grid);
   patches_pass_.resize(grid, frame.settings);
+  resize_maps(grid);
+  if (gathers_on_host(frame)) return;
+  const std::uint32_t batch = directions_per_batch(grid, frame.settings, frame.scene.has_clear());
+  if (frame.scene.has_clear()) clear_hits_pass_.resize(grid.most_slots() * batch);
   const std::uint32_t most_rays = most_patches(grid, frame.settings) * batch;
   directions_pass_.resize(most_rays);
   occlusion_.resize(grid.most_slots() * batch);
   const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
   if (have_candidates(frame.settings)) candidates_.reserve(std::uint64_t{most_rays} * groups * sizeof(Hit));
   if (groups > 1) candidates_of_group_.reserve(std::uint64_t{most_rays} * sizeof(Hit));
+}
+
+void ThesisMethod::resize_maps(const IndirectMapGrid& grid) {
   map_view_pass_.resize(grid.map_size_px);
   gather_pass_.resize(grid.map_size_px);
   filter_pass_.resize(grid.map_size_px);
@@ -151,6 +171,10 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
   }
   traced_ = nullptr;
   find_patches(frame, g_buffer, grid);
+  if (gathers_on_host(frame)) {
+    gather_on_host(frame, g_buffer, shadows, grid);
+    return all_bounces_;
+  }
   for (int bounce = 1; bounce <= frame.settings.bounces; ++bounce) {
     const ScreenLight screen{g_buffer, previous_bounce_.image};
     gather_bounce(frame, g_buffer, shadows, grid, bounce == 1 ? nullptr : &screen);
@@ -172,7 +196,7 @@ const IndirectMap& ThesisMethod::indirect_light(FrameContext& frame, const GBuff
 // Scaling down (5.1), and which patch each pixel refers to (5.2).
 void ThesisMethod::find_patches(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid) {
   active_blocks_ = &active_blocks_pass_.run(g_buffer, grid);
-  patches_ = &patches_pass_.run(g_buffer, grid, *active_blocks_, frame.settings);
+  patches_ = &patches_pass_.run(g_buffer, grid, *active_blocks_, frame.settings, gathers_on_host(frame));
   if (frame.settings.triangle_groups > 1)
     frame.triangle_groups.update(frame.trace_scene, static_cast<std::uint32_t>(frame.settings.triangle_groups));
   if (patches_->have_candidates) frame.timer.mark("patches");
@@ -197,24 +221,58 @@ Directions& ThesisMethod::trace_batch(FrameContext& frame, const GBuffer& g_buff
   return *traced_;
 }
 
-// The nearest hits of the patches' rays are the pixels' own where a patch is one pixel, else their candidates.
-void ThesisMethod::trace(FrameContext& frame, const Directions& directions) {
+void ThesisMethod::trace_candidates(FrameContext& frame, const Directions& directions) {
   const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
   frame.rays += std::uint64_t{directions.ray_count} * groups;
-  if (!patches_->have_candidates) {
-    frame.tracer.closest_hit(directions.rays, directions.ray_count, occlusion_.hits, &occlusion_.list);
-    frame.timer.mark("trace");
-    return;
-  }
   if (groups > 1)
     frame.triangle_groups.closest_hits(directions.rays, directions.ray_count, candidates_, candidates_of_group_);
   else
     frame.tracer.closest_hit(directions.rays, directions.ray_count, candidates_);
   frame.timer.mark("trace");
+}
+
+// The nearest hits of the patches' rays are the pixels' own where a patch is one pixel, else their candidates.
+void ThesisMethod::trace(FrameContext& frame, const Directions& directions) {
+  const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
+  if (!patches_->have_candidates) {
+    frame.rays += directions.ray_count;
+    frame.tracer.closest_hit(directions.rays, directions.ray_count, occlusion_.hits, &occlusion_.list);
+    frame.timer.mark("trace");
+    return;
+  }
+  trace_candidates(frame, directions);
   frame.tracer.test_candidates({patches_->pixel_origins, directions.directions, candidates_, active_blocks_->slots(),
                                 patches_->count, directions.count, groups, frame.settings.trace_missed},
                                occlusion_.hits, occlusion_.list);
   frame.timer.mark("candidates");
+}
+
+// The only bounce, batch by batch.
+void ThesisMethod::gather_on_host(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                                  const IndirectMapGrid& grid) {
+  const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
+  const auto groups = static_cast<std::uint32_t>(frame.settings.triangle_groups);
+  constexpr std::uint32_t kPatchStep = 4096;  // so that buffers do not grow with every frame
+  const std::uint32_t most_patches = (patches_->count / kPatchStep + 1) * kPatchStep;
+  const std::uint32_t batch = directions_per_host_batch(most_patches, frame.settings);
+  directions_pass_.resize(most_patches * batch);
+  candidates_.reserve(std::uint64_t{most_patches} * batch * groups * sizeof(Hit));
+  if (groups > 1) candidates_of_group_.reserve(std::uint64_t{most_patches} * batch * sizeof(Hit));
+  host_gather_pass_.begin(frame.scene, shadows);
+  for (std::uint32_t first = 0; first < samples; first += batch) {
+    const std::uint32_t seed = frame.settings.seed * 0x9e3779b9u + frame.frame_number;
+    const Directions& directions = directions_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, *patches_, first,
+                                                        std::min(batch, samples - first), seed);
+    frame.timer.mark("directions");
+    trace_candidates(frame, directions);
+    const OcclusionRays rays{directions, *patches_, active_blocks_->slots()};
+    frame.rays += host_gather_pass_.run(frame.scene, *frame.tracer.host(),
+                                        {rays, candidates_, groups, frame.settings.trace_missed});
+    frame.timer.mark("gather");
+  }
+  gather_pass_.run_summed(g_buffer, grid, *active_blocks_, host_gather_pass_.sums(), samples, all_bounces_);
+  if (frame.settings.denoise) filter_pass_.run(gather_pass_.guide(), all_bounces_);
+  frame.timer.mark("gather");
 }
 
 void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,

@@ -10,6 +10,7 @@
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/gather.h"
 #include "renderer/passes/hit_light.h"
+#include "renderer/passes/host_gather.h"
 #include "renderer/passes/patches.h"
 #include "renderer/passes/shadow_maps.h"
 
@@ -30,12 +31,16 @@ class ThesisMethod {
   };
   const Picture& render_layers(FrameContext& frame);
   void resize(const FrameContext& frame, const IndirectMapGrid& grid);
+  void resize_maps(const IndirectMapGrid& grid);
   const IndirectMap& indirect_light(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                                     const IndirectMapGrid& grid);
   void find_patches(FrameContext& frame, const GBuffer& g_buffer, const IndirectMapGrid& grid);
   Directions& trace_batch(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                           const IndirectMapGrid& grid, std::uint32_t first, std::uint32_t batch);
   void trace(FrameContext& frame, const Directions& directions);
+  void trace_candidates(FrameContext& frame, const Directions& directions);
+  void gather_on_host(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
+                      const IndirectMapGrid& grid);
   void gather_bounce(FrameContext& frame, const GBuffer& g_buffer, const ShadowMaps& shadows,
                      const IndirectMapGrid& grid, const ScreenLight* screen);
   const Picture& clear_surfaces_over(const Picture& behind, FrameContext& frame, const GBuffer& g_buffer,
@@ -50,6 +55,7 @@ class ThesisMethod {
   DirectionsPass directions_pass_;
   ClearHitsPass clear_hits_pass_;
   HitLightPass hit_light_pass_;
+  HostGatherPass host_gather_pass_;
   GatherPass gather_pass_;
   IndirectFilterPass filter_pass_;
   AddMapsPass add_maps_pass_;

@@ -35,7 +35,7 @@ void check_texels(std::uint64_t bytes, const char* what) {
 
 }  // namespace
 
-DeviceGeometry::DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives)
+DeviceGeometry::DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives, gl::BufferUse triangles)
     : primitives_(std::move(primitives)) {
   std::uint64_t vertices = 0, indices = 0;
   for (const auto& primitive : primitives_) {
@@ -53,7 +53,7 @@ DeviceGeometry::DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> pri
     indices_.upload(std::span<const std::uint32_t>(primitives_[i]->indices), first_index_[i] * sizeof(std::uint32_t));
   positions_ = gl::Buffer("positions", vertices * sizeof(glm::vec3));
   vertices_ = gl::Buffer("vertices", vertices * sizeof(DeviceVertex));
-  triangles_ = gl::Buffer("triangles", indices / 3 * sizeof(DeviceTriangle));
+  triangles_ = gl::Buffer("triangles", indices / 3 * sizeof(DeviceTriangle), triangles);
   upload_rigid();
 }
 
@@ -87,15 +87,16 @@ void DeviceGeometry::upload_deformed(const Primitive& primitive, const DeformedV
   triangles_.upload(std::span<const DeviceTriangle>(triangles), first_triangle * sizeof(DeviceTriangle));
 }
 
-DeviceScene::DeviceScene()
-    : instances_("instances", 0),
-      materials_("materials", 0),
+DeviceScene::DeviceScene(gl::BufferUse buffers)
+    : instances_("instances", 0, buffers),
+      materials_("materials", 0, buffers),
       draw_commands_("draws", 0),
       position_texels_("positions", GL_RGB32F),
       vertex_texels_("vertices", GL_RGBA32UI),
       triangle_texels_("triangles", GL_RGBA32UI),
       instance_texels_("instances", GL_RGBA32UI),
-      material_texels_("materials", GL_RGBA32UI) {
+      material_texels_("materials", GL_RGBA32UI),
+      buffers_(buffers) {
   glCreateVertexArrays(1, &vertex_array_);
 }
 
@@ -108,6 +109,7 @@ void DeviceScene::prepare(const Scene& scene, const Pose& pose, bool multiple_sc
   use_textures(scene);
   upload_materials(scene);
   upload_instances(scene, pose);
+  environment_ = scene.environment;
   set_defines(scene, pose, multiple_scattering);
   attach_buffers();
   set_vertex_array();
@@ -162,7 +164,7 @@ void DeviceScene::use_geometry(const Pose& pose) {
   if (found != geometries_.end())
     geometries_.splice(geometries_.begin(), geometries_, found);
   else
-    geometries_.push_front(std::make_unique<DeviceGeometry>(std::move(primitives)));
+    geometries_.push_front(std::make_unique<DeviceGeometry>(std::move(primitives), buffers_));
   if (geometries_.size() > kKeptScenes) geometries_.pop_back();
 }
 
@@ -285,6 +287,12 @@ void DeviceScene::set_vertex_array() {
   enable(0, 0);
   for (const GLuint attribute : {1u, 2u, 3u}) enable(attribute, 1);
   for (const GLuint attribute : {4u, 5u, 6u, 7u}) enable(attribute, 2);
+}
+
+DeviceScene::HostHitData DeviceScene::host_hit_data() const {
+  return {reinterpret_cast<const DeviceInstance*>(instances_.host()),
+          reinterpret_cast<const DeviceTriangle*>(geometries_.front()->triangles().host()),
+          reinterpret_cast<const DeviceMaterial*>(materials_.host())};
 }
 
 void DeviceScene::feed_instances_before(const gl::Buffer& instances) const {

@@ -12,10 +12,15 @@
 
 namespace lightwell {
 
+struct DeviceInstance;
+struct DeviceMaterial;
+struct DeviceTriangle;
+
 /// Vertices and indices of a set of primitives, uploaded once and kept while the scene uses just these.
 class DeviceGeometry {
  public:
-  DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives);
+  /// `triangles`: where those live.
+  DeviceGeometry(std::vector<std::shared_ptr<const Primitive>> primitives, gl::BufferUse triangles);
   const std::vector<std::shared_ptr<const Primitive>>& primitives() const { return primitives_; }
 
   /// Makes room for this many after the rigid ones.
@@ -47,7 +52,8 @@ enum class DrawGroup { kCulled, kCulledMirrored, kDoubleSided };
 /// What of the scene lives on the device. `prepare` brings it to a pose; the rest reads it.
 class DeviceScene {
  public:
-  DeviceScene();
+  /// `buffers`: host-visible where code on the processor asks for host_hit_data().
+  explicit DeviceScene(gl::BufferUse buffers = gl::BufferUse::kDevice);
   ~DeviceScene();
 
   /// Uploads what changed since the last frame; scenes used lately are kept, so that sessions can alternate.
@@ -82,6 +88,15 @@ class DeviceScene {
   /// Clear surfaces or alpha blends: shadows with a colour (TINTED_SHADOWS).
   bool has_tinted_shadows() const { return has_clear_ || has_blend_; }
   std::uint64_t triangles() const { return triangles_; }
+
+  /// What shaders/hit_surface.glsl reads, once the device has nothing left to do for it.
+  struct HostHitData {
+    const DeviceInstance* instances;
+    const DeviceTriangle* triangles;
+    const DeviceMaterial* materials;
+  };
+  HostHitData host_hit_data() const;
+  const Environment& environment() const { return environment_; }
 
   /// What the motion variant of g_buffer.vert is fed with as well: a DeviceInstanceBefore for each instance.
   void feed_instances_before(const gl::Buffer& instances) const;
@@ -121,6 +136,8 @@ class DeviceScene {
        has_blend_ = false, has_smooth_ = false;
   gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_, smooth_defines_;
   std::uint64_t triangles_ = 0;
+  gl::BufferUse buffers_;
+  Environment environment_;
 };
 
 }  // namespace lightwell

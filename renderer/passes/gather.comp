@@ -1,5 +1,6 @@
 // Renders the indirect lighting map (thesis 4.2, Algorithm 2): the light of a pixel's hits, weighted by its BRDF.
 // Corrected: 1/N sum f cos L / pdf, the BRDF being the pixel's and the pdf the patch's that its directions come from.
+// SUMMED: the sum is made already, by HostGatherPass.
 // LITERAL: the plain sum of what hit_light.comp weighted as printed, over r^2.
 // The map holds light over directional albedo, so that textures do not pass through its low resolution.
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -12,10 +13,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/g_buffer.glsl"
 #include "shaders/indirect_map.glsl"
 #include "shaders/environment.glsl"
+#include "shaders/receiver.glsl"
 
+#ifdef SUMMED
+layout(binding = UNIT_ARRIVING) uniform samplerBuffer sums;  // a slot: the sum of all batches, the mean distance
+#else
 layout(binding = UNIT_HITS) uniform usamplerBuffer hit_words;  // 5 texels a hit, distance first
 layout(binding = UNIT_ARRIVING) uniform samplerBuffer arriving;  // radiance of the hits
 layout(binding = UNIT_DIRECTIONS) uniform samplerBuffer directions;  // of the patches, with their pdf
+#endif
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
 layout(rgba32ui, binding = 2) writeonly uniform uimage2D guide;  // what the filter compares, see indirect_filter.comp
@@ -26,6 +32,10 @@ uniform int first_batch;
 uniform float environment_share;  // 1 in the bounce to which misses bring light from beyond the scene, else 0
 uniform uint patch_count;
 
+#ifdef SUMMED
+// xyz: the sum over the directions; w: the mean distance of the hits, metres.
+vec4 gathered(GBufferPoint point, uint slot) { return slot == kNoRank ? vec4(0.0) : texelFetch(sums, int(slot)); }
+#else
 #ifdef CLEAR_SURFACES
 layout(binding = UNIT_CLEARED) uniform samplerBuffer cleared;  // see clear_hits.comp
 vec3 light_of_miss(int record, vec3 environment) {
@@ -45,25 +55,9 @@ uint patch_of_slot(uint slot) {
 uint patch_of_slot(uint slot) { return slot; }
 #endif
 
-// The pixel's surface, ready to weight directions.
-struct Receiver {
-  Brdf brdf;
-  mat3 frame;
-  vec3 out_direction;
-  vec3 geometric_normal_ws;
-};
-
 Receiver receiver_at(GBufferPoint point) {
   const mat3 frame = frame_around(point.normal_ws);
   return Receiver(brdf_in_frame(point.brdf, frame), frame, point.to_camera_ws * frame, point.geometric_normal_ws);
-}
-
-// f cos(theta) / pdf. Light that passes the surface comes from below both normals, what is reflected from above both.
-vec3 weight_of(Receiver receiver, vec4 direction) {
-  const vec3 in_direction = direction.xyz * receiver.frame;
-  const bool agree = (dot(direction.xyz, receiver.geometric_normal_ws) < 0.0) == (in_direction.z < 0.0);
-  const vec3 value = brdf_times_cosine(receiver.brdf, receiver.out_direction, in_direction);
-  return direction.w > 0.0 && agree ? value / max(direction.w, 1e-20) : vec3(0.0);
 }
 
 // Light along a direction with a hit at `t` metres, or none where that is negative, times its weight.
@@ -74,20 +68,13 @@ vec3 light_from(Receiver receiver, int record, vec4 direction, float t) {
 #else
 vec3 light_from(Receiver receiver, int record, vec4 direction, float t) {
   const vec3 beyond = light_of_miss(record, environment_radiance(direction.xyz)) * environment_share;
-  return weight_of(receiver, direction) * (t >= 0.0 ? texelFetch(arriving, record).rgb : beyond);
+  return weight_of(receiver, direction.xyz, direction.w) * (t >= 0.0 ? texelFetch(arriving, record).rgb : beyond);
 }
 #endif
 
-void main() {
-  const ivec2 map_pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(map_pixel, indirect_size_px))) return;
-  const uint slot = slot_of_pixel(map_pixel);
-  const GBufferPoint point = g_buffer_point(representative_pixel(map_pixel));
-  const float cos_out = max(dot(point.normal_ws, point.to_camera_ws), 0.0);
-
+vec4 gathered(GBufferPoint point, uint slot) {
   const Receiver receiver = receiver_at(point);
   const uint patch_index = patch_of_slot(slot == kNoRank ? 0u : slot);
-
   vec3 sum = vec3(0.0);
   vec2 distance_sum = vec2(0.0);
   const uint count = slot == kNoRank ? 0u : direction_count;
@@ -98,6 +85,19 @@ void main() {
     sum += light_from(receiver, record, direction, t);
     distance_sum += t >= 0.0 ? vec2(t, 1.0) : vec2(0.0);
   }
+  return vec4(sum, distance_sum.y > 0.0 ? distance_sum.x / distance_sum.y : 0.0);
+}
+#endif
+
+void main() {
+  const ivec2 map_pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(map_pixel, indirect_size_px))) return;
+  const uint slot = slot_of_pixel(map_pixel);
+  const GBufferPoint point = g_buffer_point(representative_pixel(map_pixel));
+  const float cos_out = max(dot(point.normal_ws, point.to_camera_ws), 0.0);
+
+  const vec4 light = gathered(point, slot);
+  vec3 sum = light.xyz;
 #ifndef LITERAL
   sum /= float(total_directions);
 #endif
@@ -106,7 +106,7 @@ void main() {
   const vec4 before = first_batch == 1 ? vec4(0.0) : imageLoad(indirect_map, map_pixel);
   imageStore(indirect_map, map_pixel, vec4(before.rgb + demodulated, point.valid ? 1.0 : 0.0));
   if (first_batch == 0) return;
-  imageStore(occlusion_distance, map_pixel, vec4(distance_sum.y > 0.0 ? distance_sum.x / distance_sum.y : 0.0));
+  imageStore(occlusion_distance, map_pixel, vec4(light.w));
   imageStore(guide, map_pixel,
              uvec4(floatBitsToUint(point.position_ws), pack_normal_roughness(point.normal_ws, sqrt(point.brdf.alpha))));
 }

@@ -32,19 +32,39 @@ void GatherPass::resize(glm::ivec2 map_size_px) {
   guide_ = gl::Texture("filter guide", GL_RGBA32UI, map_size_px);
 }
 
+void GatherPass::bind(const GBuffer& g_buffer, const ActiveBlocks& blocks, const IndirectMap& map) const {
+  g_buffer.bind();
+  blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
+  map.image.bind_image(0, GL_READ_WRITE);
+  occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
+  guide_.bind_image(2, GL_WRITE_ONLY);
+}
+
+void GatherPass::dispatch(const Variant& variant, const IndirectMap& map) {
+  variant.program->dispatch(map.image.size_px());
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+void GatherPass::run_summed(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+                            const gl::BufferTexture& sums, std::uint32_t total_directions, IndirectMap& map) {
+  bind(g_buffer, blocks, map);
+  sums.bind(UNIT_ARRIVING);
+  Variant& variant = variants_.with({"SUMMED 1"});
+  variant.grid.set(grid, blocks.slots());
+  variant.total_directions = total_directions;
+  variant.first_batch = 1;
+  dispatch(variant, map);
+}
+
 void GatherPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid,
                      const ActiveBlocks& blocks, const OcclusionRays& rays, const OcclusionMap& occlusion,
                      const Gathering& gathering, IndirectMap& map) {
-  g_buffer.bind();
-  blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
+  bind(g_buffer, blocks, map);
   rays.directions.direction_texels.bind(UNIT_DIRECTIONS);
   rays.patches.origin_texels.bind(UNIT_PIXEL_ORIGINS);
   occlusion.arriving_texels.bind(UNIT_ARRIVING);
   occlusion.hit_texels.bind(UNIT_HITS);
   occlusion.bind_cleared();
-  map.image.bind_image(0, GL_READ_WRITE);
-  occlusion_distance_.bind_image(1, GL_WRITE_ONLY);
-  guide_.bind_image(2, GL_WRITE_ONLY);
   const gl::Defines kind =
       gathering.literal ? gl::Defines{"LITERAL 1"} : gl::joined(scene.environment_defines(), scene.brdf_defines());
   Variant& variant = variants_.with(gl::joined(gl::joined(kind, rays.patches.defines()),
@@ -55,8 +75,7 @@ void GatherPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const In
   variant.total_directions = gathering.total_directions;
   variant.first_batch = rays.directions.first == 0 ? 1 : 0;
   variant.environment_share = gathering.misses_see_environment ? 1.0f : 0.0f;
-  variant.program->dispatch(grid.map_size_px);
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  dispatch(variant, map);
 }
 
 IndirectFilterPass::IndirectFilterPass(gl::ShaderLibrary& shaders)

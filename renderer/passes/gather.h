@@ -34,6 +34,11 @@ class GatherPass {
   void run(const DeviceScene& scene, const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
            const OcclusionRays& rays, const OcclusionMap& occlusion, const Gathering& gathering, IndirectMap& map);
 
+  /// Makes `map` of sums that are made already: a vec4 a slot, light times weight over all directions and the mean
+  /// distance of the hits, metres.
+  void run_summed(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
+                  const gl::BufferTexture& sums, std::uint32_t total_directions, IndirectMap& map);
+
   /// Mean distance of a pixel's hits in the first batch, metres (R32F).
   const gl::Texture& occlusion_distance() const { return occlusion_distance_; }
   /// Position, normal and roughness of the points gathered at, for the filter (RGBA32UI).
@@ -48,6 +53,8 @@ class GatherPass {
     gl::Uniform<int> first_batch;
     gl::Uniform<float> environment_share;
   };
+  void bind(const GBuffer& g_buffer, const ActiveBlocks& blocks, const IndirectMap& map) const;
+  static void dispatch(const Variant& variant, const IndirectMap& map);
   gl::Variants<Variant> variants_;
   gl::Texture occlusion_distance_, guide_;
 };

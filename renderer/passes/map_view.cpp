@@ -1,5 +1,8 @@
 #include "renderer/passes/map_view.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "renderer/passes/bindings.glsl"
 
 namespace lightwell {
@@ -21,6 +24,12 @@ void MapViewPass::resize(glm::ivec2 map_size_px) {
   if (image_ && image_.size_px() == map_size_px) return;
   image_ = gl::Texture("view of the indirect map", GL_RGBA32F, map_size_px);
   image_.clear(glm::vec4(0.0f));
+}
+
+bool MapViewPass::shows(ViewKind view) {
+  constexpr ViewKind kViews[] = {ViewKind::kDirection, ViewKind::kHitDistance, ViewKind::kCandidates,
+                                 ViewKind::kPatch,     ViewKind::kReference,   ViewKind::kUnmatched};
+  return std::find(std::begin(kViews), std::end(kViews), view) != std::end(kViews);
 }
 
 bool MapViewPass::is_of_batch(const Settings& settings, std::uint32_t first, std::uint32_t count) {

@@ -15,6 +15,8 @@ class MapViewPass {
   /// Empties the image.
   void resize(glm::ivec2 map_size_px);
 
+  /// Whether a view is made here.
+  static bool shows(ViewKind view);
   /// Whether the view needs `run` for the batch of directions that begins at `first`.
   static bool is_of_batch(const Settings& settings, std::uint32_t first, std::uint32_t count);
 

@@ -1,5 +1,5 @@
 // Pixels that refer to no patch become patches of their own, numbered after the others; and each pixel learns where its rays
-// start.
+// start. RECEIVERS: and code on the processor, what it gathers light with (PackedReceiver in renderer/passes/patches.h).
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -15,6 +15,9 @@ layout(std430, binding = BINDING_REFERENCES) readonly buffer References { uint r
 layout(std430, binding = BINDING_OUTPUT) readonly buffer FirstOfBlock { uint first_of_block[]; };  // their patches
 layout(std430, binding = BINDING_PATCH_POINTS) writeonly buffer PatchPoints { uvec4 patch_points[]; };
 layout(std430, binding = BINDING_PIXEL_ORIGINS) writeonly buffer PixelOrigins { uvec4 pixel_origins[]; };
+#ifdef RECEIVERS
+layout(std430, binding = BINDING_RECEIVERS) writeonly buffer Receivers { uvec4 receivers[]; };  // 2 a slot
+#endif
 
 void main() {
   const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
@@ -28,6 +31,12 @@ void main() {
   const uint patch_index = is_unmatched ? own : reference;
   pixel_origins[2u * slot] = uvec4(floatBitsToUint(point.position_ws + lift_ws), patch_index);
   pixel_origins[2u * slot + 1u] = uvec4(floatBitsToUint(-2.0 * lift_ws), 0u);
+#ifdef RECEIVERS
+  const ivec2 seen_px = representative_pixel(min(map_pixel, indirect_size_px - 1));
+  receivers[2u * slot] = texelFetch(g_surface, seen_px, 0);
+  receivers[2u * slot + 1u] = uvec4(texelFetch(g_material, seen_px, 0).rg,
+                                    packSnorm2x16(octahedral_from_unit(point.to_camera_ws)), 0u);
+#endif
   if (!is_unmatched) return;
   const PatchPoint alone =
       PatchPoint(true, map_pixel, point.position_ws, point.normal_ws, point.view_depth_m, point.material);

@@ -69,7 +69,7 @@ std::uint32_t PatchesPass::number_unmatched(std::uint32_t blocks) {
 }
 
 const Patches& PatchesPass::run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
-                                const Settings& settings) {
+                                const Settings& settings, bool with_receivers) {
   const auto pixels_of_patch = static_cast<std::uint32_t>(grid.patch_side * grid.patch_side);
   patches_.have_candidates = have_candidates(settings);
   patches_.count = patches_.first_unmatched = blocks.slots() / pixels_of_patch;
@@ -86,7 +86,12 @@ const Patches& PatchesPass::run(const GBuffer& g_buffer, const IndirectMapGrid& 
   dispatch(reference_map_.with(similarity), grid, blocks, settings, blocks.slots(), kBlockSlots);
   patches_.count = number_unmatched(blocks.count);
   first_of_block_.bind_storage(BINDING_OUTPUT);
-  dispatch(number_unmatched_.with({}), grid, blocks, settings, blocks.slots(), 64);
+  if (with_receivers) {
+    patches_.receivers.reserve(std::uint64_t{blocks.slots()} * sizeof(PackedReceiver));
+    patches_.receivers.bind_storage(BINDING_RECEIVERS);
+  }
+  dispatch(number_unmatched_.with(with_receivers ? gl::Defines{"RECEIVERS 1"} : gl::Defines{}), grid, blocks, settings,
+           blocks.slots(), 64);
   return patches_;
 }
 

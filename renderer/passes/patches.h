@@ -11,6 +11,15 @@
 
 namespace lightwell {
 
+/// What a pixel gathers light with, for code on the processor: texels of the G-buffer. std430, 32 bytes.
+struct PackedReceiver {
+  std::uint32_t normal, geometric_normal, base_color_rg, base_color_b_metallic;
+  std::uint32_t material_roughness, dielectric;
+  std::uint32_t to_camera;  // octahedral, 2 x snorm16
+  std::uint32_t padding;
+};
+static_assert(sizeof(PackedReceiver) == 32);
+
 /// What the pixels of the indirect map trace their rays by. With patches of one pixel and triangles in one group, every
 /// pixel's slot is a patch and the buffers are not filled.
 struct Patches {
@@ -20,6 +29,7 @@ struct Patches {
   gl::Buffer points{"patch points", 0};  // 2 uvec4 a patch: shaders/patches.glsl
   gl::Buffer references{"reference map", 0};  // uint32 a slot: its patch, or none, or a mark that it is unmatched
   gl::Buffer pixel_origins;                   // 2 vec4 a slot: see PixelOrigin in renderer/tracing/tracer.h
+  gl::Buffer receivers{"receivers", 0, gl::BufferUse::kHostVisible};  // PackedReceiver a slot, where asked for
   gl::BufferTexture point_texels{"patch points", GL_RGBA32UI};
   gl::BufferTexture reference_texels{"reference map", GL_R32UI};
   gl::BufferTexture origin_texels{"pixel origins", GL_RGBA32UI};
@@ -41,8 +51,9 @@ class PatchesPass {
   PatchesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
   void resize(const IndirectMapGrid& grid, const Settings& settings);
   /// Waits for the device where patches are shared: how many pixels are unmatched decides how many rays are made.
+  /// `with_receivers`: fills Patches::receivers as well.
   const Patches& run(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
-                     const Settings& settings);
+                     const Settings& settings, bool with_receivers);
 
  private:
   struct Variant {

@@ -7,6 +7,7 @@
 // LAMBERT_ONLY: for scenes whose materials are all without a specular lobe, in the frame of the normal.
 // HAS_LOBES: the lobes of glTF's extensions, see shaders/brdf_lobes.glsl.
 // WIDENED_LOBE: the specular lobe may be made wider than the interface is rough, whose base gets what it did.
+// LANES: without what samples, see shaders/select.glsl.
 #include "shaders/microfacet.glsl"
 
 // What the BRDF needs to know of a surface point.
@@ -44,7 +45,7 @@ Brdf make_brdf(vec3 base_color, float metallic, float roughness, vec3 f0_dielect
   const vec3 f0 = min(f0_dielectric, vec3(1.0)) * specular_factor;
   Brdf brdf;
   brdf.diffuse_albedo = base_color * (1.0 - metallic);
-  brdf.f0_dielectric = max(f0.r, max(f0.g, f0.b));
+  brdf.f0_dielectric = max(f0.x, max(f0.y, f0.z));
   brdf.f90_dielectric = specular_factor;
   brdf.f0 = mix(f0, base_color, metallic);
   brdf.f90 = mix(specular_factor, 1.0, metallic);
@@ -147,7 +148,7 @@ vec3 base_times_cosine(Brdf brdf, float cos_out, float cos_in, float cos_differe
   const float passed = 1.0 - most_reflected(brdf, min(cos_out, cos_in));
 #endif
   value += passed * (1.0 / kPi) * brdf.diffuse_albedo;
-  return cos_out > 0.0 && cos_in > 0.0 ? value * cos_in : vec3(0.0);
+  return select(cos_out > 0.0 && cos_in > 0.0, value * cos_in, vec3(0.0));
 }
 
 #ifdef HAS_LOBES
@@ -174,6 +175,7 @@ vec3 brdf_times_cosine(Brdf brdf, vec3 out_direction, vec3 in_direction) {
 // The BRDF of a point for directions in a frame with the normal as its third axis.
 Brdf brdf_in_frame(Brdf brdf, mat3 world_from_local) { return brdf; }
 
+#ifndef LANES
 // Share of samples given to the specular lobe: by the luminance each lobe reflects.
 float specular_probability(Brdf brdf, float cos_out) {
   const float weight = schlick_weight(cos_out);
@@ -210,7 +212,9 @@ vec3 sample_brdf(Brdf brdf, vec3 out_direction, vec2 u, float u_lobe) {
   return specular ? reflected : cosine_hemisphere(u);
 }
 #endif
+#endif
 
+#ifndef LANES
 // What the surface reflects of uniform light, roughly: by it the indirect map is demodulated, so that the map stays smooth
 // over textures. Any positive function keeps the picture's mean; the closer, the smoother. The same in all variants, for
 // passes that divide by it and ones that multiply may not need the same.
@@ -230,3 +234,4 @@ vec3 directional_albedo(Brdf brdf, float cos_out) {
   const vec3 specular = max(f0 * scale_bias.x + brdf.f90 * scale_bias.y, vec3(0.0));
   return base * (1.0 - brdf.f0_dielectric) + specular;
 }
+#endif

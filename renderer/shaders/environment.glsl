@@ -1,4 +1,5 @@
 // What a ray sees that hits nothing. Needs bindings and sampling (kPi).
+#include "shaders/sky_gradient.glsl"
 
 layout(std140, binding = BINDING_ENVIRONMENT) uniform EnvironmentBlock {
   vec4 zenith_radiance;   // w: rotation about +Y, radians
@@ -29,10 +30,9 @@ vec3 environment_radiance(vec3 direction_ws) {
     return textureLod(environment_image, environment_uv(direction_ws), 0.0).rgb * environment.horizon_radiance.w;
   }
 #endif
-  const float up = direction_ws.y;
-  const vec3 sky = mix(environment.horizon_radiance.rgb, environment.zenith_radiance.rgb, sqrt(max(up, 0.0)));
-  const vec3 below = mix(environment.horizon_radiance.rgb, environment.ground_radiance.rgb, smoothstep(0.0, 0.15, -up));
-  return (up >= 0.0 ? sky : below) * environment.horizon_radiance.w;
+  return sky_gradient(environment.zenith_radiance.rgb, environment.horizon_radiance.rgb, environment.ground_radiance.rgb,
+                      direction_ws.y) *
+         environment.horizon_radiance.w;
 }
 
 vec3 background_radiance(vec3 direction_ws) {

@@ -3,6 +3,9 @@
 // POINT_LIGHTS if some of them are; TINTED_SHADOWS if surfaces let light through that are not in the moments of depth,
 // CLEAR_RECEIVER for the light of these surfaces themselves.
 
+// LANES: the block, its maps and the loop over it are the caller's; see renderer/lanes/glsl.h.
+#include "shaders/select.glsl"
+
 struct Light {
   vec3 position_ws;
   float inverse_range;   // 0: infinite
@@ -17,6 +20,7 @@ struct Light {
   mat4 shadow_clip_from_world;  // directional and spot lights
 };
 
+#ifndef LANES
 layout(std140, binding = BINDING_LIGHTS) uniform Lights {
   uint light_count;
   float shadow_least_variance;
@@ -26,6 +30,8 @@ layout(std140, binding = BINDING_LIGHTS) uniform Lights {
 };
 
 layout(binding = UNIT_SHADOW_MOMENTS) uniform sampler2DArray shadow_moments;  // mean and mean square of depth
+vec2 shadow_moments_at(vec3 place) { return textureLod(shadow_moments, place, 0.0).rg; }
+#endif
 
 #ifdef TINTED_SHADOWS
 // What surfaces before the nearest opaque one let through, all together; a: the depth of the nearest of them.
@@ -59,38 +65,40 @@ Visibility tint_of_way(vec3 place, float depth, float bias) { return 1.0; }
 float chebyshev_upper_bound(vec2 moments, float depth) {
   const float variance = max(moments.y - moments.x * moments.x, shadow_least_variance);
   const float distance = depth - moments.x;
-  return distance <= 0.0 ? 1.0 : variance / (variance + distance * distance);
+  return select(distance <= 0.0, 1.0, variance / (variance + distance * distance));
 }
 
 // A cube face: +X -X +Y -Y +Z -Z, and where on it a direction points, in [-1, 1]. The axes are those of
 // ShadowMapsPass's cube views.
 vec3 cube_face(vec3 direction) {
   const vec3 size = abs(direction);
-  if (size.x >= size.y && size.x >= size.z)
-    return vec3(vec2(direction.z, direction.y) / size.x, direction.x >= 0.0 ? 0.0 : 1.0);
-  if (size.y >= size.z) return vec3(vec2(direction.x, direction.z) / size.y, direction.y >= 0.0 ? 2.0 : 3.0);
-  return vec3(vec2(direction.x, direction.y) / size.z, direction.z >= 0.0 ? 4.0 : 5.0);
+  const vec3 x_face = vec3(vec2(direction.z, direction.y) / size.x, select(direction.x >= 0.0, 0.0, 1.0));
+  const vec3 y_face = vec3(vec2(direction.x, direction.z) / size.y, select(direction.y >= 0.0, 2.0, 3.0));
+  const vec3 z_face = vec3(vec2(direction.x, direction.y) / size.z, select(direction.z >= 0.0, 4.0, 5.0));
+  return select(size.x >= size.y && size.x >= size.z, x_face, select(size.y >= size.z, y_face, z_face));
 }
 
 // Share of the light that reaches a point, from the shadow map; 1 outside it.
 Visibility light_visibility(Light light, vec3 position_ws, vec3 normal_ws, vec3 to_light_ws) {
   const vec3 from_light = position_ws - light.position_ws;
   const vec4 clip = light.shadow_clip_from_world * vec4(position_ws, 1.0);
-  vec2 ndc = clip.xy / clip.w;
+  vec2 ndc = vec2(clip.x, clip.y) / clip.w;
   float layer = float(light.first_shadow_layer);
 #ifdef POINT_LIGHTS
   if (light.kind == 1u) {
     const vec3 face = cube_face(from_light);
-    ndc = face.xy * shadow_cube_scale;
+    ndc = vec2(face.x, face.y) * shadow_cube_scale;
     layer += face.z;
   }
 #endif
   const float depth = light.kind == 0u ? clip.z : length(from_light) / light.shadow_far_m;
   const bool outside = max(abs(ndc.x), abs(ndc.y)) > 1.0 || (light.kind == 2u && clip.w <= 0.0);
   const vec3 place = vec3(ndc * 0.5 + 0.5, layer);
-  const vec2 moments = textureLod(shadow_moments, place, 0.0).rg;
+  const vec2 moments = shadow_moments_at(place);
   const bool unknown = outside || light.first_shadow_layer < 0;
-  return unknown ? Visibility(1.0) : chebyshev_upper_bound(moments, depth) * tint_of_way(place, depth, tint_bias(normal_ws, to_light_ws, depth));
+  const Visibility known =
+      chebyshev_upper_bound(moments, depth) * tint_of_way(place, depth, tint_bias(normal_ws, to_light_ws, depth));
+  return select(unknown, Visibility(1.0), known);
 }
 
 struct LightSample {
@@ -119,6 +127,7 @@ LightSample light_at(Light light, vec3 position_ws) {
   return at;
 }
 
+#ifndef LANES
 // What one light adds to reflected_punctual_light().
 vec3 reflected_light(Light light, Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
   const LightSample at = light_at(light, position_ws);
@@ -144,3 +153,4 @@ vec3 reflected_punctual_light(Brdf brdf, vec3 position_ws, vec3 normal_ws, vec3 
 #endif
   return radiance;
 }
+#endif

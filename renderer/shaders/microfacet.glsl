@@ -1,5 +1,6 @@
 // Microfacets of Trowbridge and Reitz (GGX): what the lobes of shaders/brdf.glsl are made of. Directions are unit, in the
 // frame of the normal (+Z), unless cosines alone are asked for. Needs shaders/sampling.glsl.
+// LANES: without what samples, see shaders/select.glsl.
 
 const float kSmallestAlpha = 0.0016;  // roughness 0.04: below it highlights of punctual lights vanish between pixels
 
@@ -22,7 +23,7 @@ float ggx_distribution(float cos_half, float alpha) {
 // The same from the half vector, without the cancellation near the normal of smooth surfaces.
 float ggx_distribution(vec3 half_vector, float alpha) {
   const float a2 = alpha * alpha;
-  const float d = dot(half_vector.xy, half_vector.xy) + half_vector.z * half_vector.z * a2;
+  const float d = half_vector.x * half_vector.x + half_vector.y * half_vector.y + half_vector.z * half_vector.z * a2;
   return a2 / (kPi * d * d);
 }
 
@@ -37,6 +38,7 @@ float ggx_visibility(float cos_out, float cos_in, float alpha) {
   return ggx_half_masking(cos_out, alpha) * ggx_half_masking(cos_in, alpha);
 }
 
+#ifndef LANES
 // A visible normal of the GGX distribution: Dupuy and Benyoub 2023, "Sampling visible GGX normals with spherical caps".
 vec3 sample_visible_normal(vec3 out_direction, float alpha, vec2 u) {
   const vec3 stretched = normalize(vec3(out_direction.xy * alpha, out_direction.z));
@@ -56,3 +58,4 @@ float visible_normal_density(float cos_out, vec3 half_vector, float alpha) {
 float visible_normal_pdf(float cos_out, vec3 half_vector, float alpha) {
   return 0.25 * visible_normal_density(cos_out, half_vector, alpha);
 }
+#endif

@@ -1,6 +1,6 @@
 // Random numbers and directions. All are functions of (pixel, sample, seed): the same request gives the same bytes.
 
-const float kPi = 3.14159265358979;
+#include "shaders/frame.glsl"
 
 // A good 32-bit mixer: Wellons 2018, "lowbias32".
 uint hash(uint x) {
@@ -54,15 +54,6 @@ vec2 sobol_2d(uint index, uint seed) {
 float sobol_1d(uint index, uint seed) {
   const uint shuffled = owen_scramble(index, hash(seed));
   return unit_interval(bitfieldReverse(owen_scramble_reversed(shuffled, hash(seed ^ 0xa511e9b3u))));
-}
-
-// An orthonormal frame whose third column is `normal`: Duff et al. 2017, "Building an orthonormal basis, revisited".
-mat3 frame_around(vec3 normal) {
-  const float s = normal.z >= 0.0 ? 1.0 : -1.0;
-  const float a = -1.0 / (s + normal.z);
-  const float b = normal.x * normal.y * a;
-  return mat3(vec3(1.0 + s * normal.x * normal.x * a, s * b, -s * normal.x),
-              vec3(b, s + normal.y * normal.y * a, -normal.y), normal);
 }
 
 // Direction with density cos(theta) / pi about +Z: Malley's method over the concentric disk map (Shirley and Chiu 1997).

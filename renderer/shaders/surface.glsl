@@ -1,6 +1,8 @@
 // A shaded point: material, textures and vertex attributes come together. Needs scene_data, brdf, packing and textures.
 // HAS_TEXTURES: base colours may be textured and vertices coloured; ALL_TEXTURES: the other textures may be there too.
 
+#include "shaders/shading_normal.glsl"
+
 struct Attributes {
   vec3 normal_ws;       // unit, interpolated
   vec3 tangent_ws;      // not normalised
@@ -53,15 +55,4 @@ Surface shade_surface(Material material, Attributes at, vec2 footprint) {
   surface.normal_ws = mapped_normal(material.normal_texture, material.normal_scale, at, footprint);
 #endif
   return surface;
-}
-
-// The shading normal bent as little as it takes for its mirror direction to leave the surface, so that neither a normal
-// map nor interpolation makes a pixel black at grazing angles: Keller et al. 2017, "The Iray light transport simulation
-// and rendering system". `geometric_normal_ws` is unit and on the viewer's side; the result is as well.
-vec3 visible_shading_normal(vec3 normal_ws, vec3 geometric_normal_ws, vec3 to_viewer_ws) {
-  const float kLeastCosine = 0.01;
-  const vec3 mirrored = reflect(-to_viewer_ws, normal_ws);
-  const float cosine = dot(mirrored, geometric_normal_ws);
-  if (cosine >= kLeastCosine) return normal_ws;
-  return normalize(to_viewer_ws + normalize(mirrored + (kLeastCosine - cosine) * geometric_normal_ws));
 }

@@ -99,11 +99,15 @@ struct TraceScene {
   std::span<const Coverage> coverage;  // one per instance
 };
 
+class HostTracer;
 class ViewTracer;
 
 class Tracer {
  public:
   virtual ~Tracer() = default;
+
+  /// Null for a tracer on the device.
+  virtual HostTracer* host() { return nullptr; }
 
   /// "embree", "compute" or "brute-force".
   virtual std::string_view name() const = 0;

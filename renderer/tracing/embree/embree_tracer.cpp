@@ -10,6 +10,7 @@
 #include "renderer/tracing/embree/candidates.h"
 #include "renderer/tracing/embree/packet.h"
 #include "renderer/tracing/embree/view_rays.h"
+#include "renderer/tracing/host_tracer.h"
 #include "renderer/tracing/thread_pool.h"
 
 namespace lightwell {
@@ -103,7 +104,12 @@ void any_hits(const EmbreeScene& scene, const Ray* rays, std::uint32_t* visible,
   std::copy_n(words.begin(), (end - begin + 31) / 32, visible + begin / 32);
 }
 
-class EmbreeTracer final : public Tracer, public ViewTracer {
+template <int width>
+void closest_hits_at_once(const EmbreeScene& scene, std::span<const Ray> rays, std::span<Hit> hits) {
+  closest_hits<width>(scene, rays.data(), hits.data(), nullptr, 0, static_cast<std::uint32_t>(rays.size()));
+}
+
+class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer {
  public:
   explicit EmbreeTracer(unsigned threads) : pool_(threads), scene_(threads) {
     if (rtcGetDeviceProperty(scene_.device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
@@ -113,6 +119,8 @@ class EmbreeTracer final : public Tracer, public ViewTracer {
   }
 
   std::string_view name() const override { return "embree"; }
+
+  HostTracer* host() override { return this; }
 
   void update(const TraceScene& scene) override { scene_.update(scene); }
 
@@ -125,11 +133,11 @@ class EmbreeTracer final : public Tracer, public ViewTracer {
     gl::wait_for_device();
     pool_.parallel_for(count, kChunkRays, [&](std::uint32_t begin, std::uint32_t end) {
       if (width_ == 16)
-        closest_hits<16>(scene_, in, out, lists, begin, end);
+        lightwell::closest_hits<16>(scene_, in, out, lists, begin, end);
       else if (width_ == 8)
-        closest_hits<8>(scene_, in, out, lists, begin, end);
+        lightwell::closest_hits<8>(scene_, in, out, lists, begin, end);
       else
-        closest_hits<4>(scene_, in, out, lists, begin, end);
+        lightwell::closest_hits<4>(scene_, in, out, lists, begin, end);
     });
     if (list) finish(*list, chunk_lists_.join(pool_, host_of<std::uint32_t>(list->rays)));
   }
@@ -200,6 +208,25 @@ class EmbreeTracer final : public Tracer, public ViewTracer {
   std::uint64_t memory_bytes() const override { return scene_.memory_bytes(); }
 
  private:
+  void parallel_for(std::uint32_t count, std::uint32_t chunk,
+                    const std::function<void(std::uint32_t, std::uint32_t)>& body) override {
+    pool_.parallel_for(count, chunk, [&](std::uint32_t begin, std::uint32_t end) {
+      const FlushDenormals flush;
+      body(begin, end);
+    });
+  }
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const override {
+    if (width_ == 16)
+      closest_hits_at_once<16>(scene_, rays, hits);
+    else if (width_ == 8)
+      closest_hits_at_once<8>(scene_, rays, hits);
+    else
+      closest_hits_at_once<4>(scene_, rays, hits);
+  }
+  std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const override {
+    return scene_.corners_ws(instance, triangle);
+  }
+
   template <class T>
   static T* host_of(gl::Buffer& buffer) {
     LIGHTWELL_CHECK(buffer.host() != nullptr);

@@ -1,0 +1,129 @@
+// The light transport of shaders/ for lanes, and the punctual lights with their maps. For files that are compiled for a
+// kind of processor: see renderer/lanes/glsl.h.
+#pragma once
+
+#include "renderer/lanes/glsl.h"
+#include "renderer/lanes/patch_light.h"
+
+#define LANES
+#define POINT_LIGHTS
+
+namespace lightwell::lanes {
+namespace {
+
+template <class Vector>
+Vector load(const void* from) {
+  Vector vector;
+  __builtin_memcpy(&vector, from, sizeof vector);
+  return vector;
+}
+template <class Vector>
+void store(void* to, Vector vector) {
+  __builtin_memcpy(to, &vector, sizeof vector);
+}
+
+Float load_float(const float* from) {
+  return load<Floats>(from);
+}
+vec3 load_vec3(const PixelFloats* from, std::uint32_t i) {
+  return {load_float(&from[0][i]), load_float(&from[1][i]), load_float(&from[2][i])};
+}
+void store_vec3(PixelFloats* to, std::uint32_t i, vec3 value) {
+  store(&to[0][i], value.x.v), store(&to[1][i], value.y.v), store(&to[2][i], value.z.v);
+}
+vec3 all_lanes(const float* value) {
+  return {value[0], value[1], value[2]};
+}
+
+#define float Float
+#define bool Mask
+#define uint std::uint32_t
+// In the order of their needs.
+// clang-format off
+#include "renderer/shaders/frame.glsl"
+#include "renderer/shaders/packing.glsl"
+#include "renderer/shaders/brdf.glsl"
+#include "renderer/shaders/receiver.glsl"
+#include "renderer/shaders/shading_normal.glsl"
+#include "renderer/shaders/sky_gradient.glsl"
+// clang-format on
+#undef float
+#undef bool
+
+// The lights, their block and their maps.
+struct Lighting {
+  explicit Lighting(const LightEnvironment& environment)
+      : environment_(environment),
+        shadow_least_variance(environment.shadow_least_variance),
+        shadow_cube_scale(environment.shadow_cube_scale) {}
+
+  // Bilinear, clamped to the edge.
+  vec2 shadow_moments_at(vec3 place) const {
+    const std::int32_t side = environment_.shadow_side_px;
+    const Float x = clamp(place.x * side - 0.5, 0, side - 1), y = clamp(place.y * side - 0.5, 0, side - 1);
+    const Ints column = truncated(min(x, side - 2)), row = truncated(min(y, side - 2));
+    const Ints texel = (truncated(max(place.z + 0.5, 0.0)) * side + row) * side + column;
+    const Float share_x = x - to_float(column), share_y = y - to_float(row);
+    alignas(64) std::int32_t texels[kLanes];
+    alignas(64) float shares_x[kLanes], shares_y[kLanes], means[kLanes], mean_squares[kLanes];
+    store(texels, texel), store(shares_x, share_x.v), store(shares_y, share_y.v);
+    using Pair = float __attribute__((vector_size(16)));  // two texels side by side
+    for (int i = 0; i < kLanes; ++i) {
+      const float* upper = environment_.shadow_moments + 2 * static_cast<std::int64_t>(texels[i]);
+      const Pair above = load<Pair>(upper), below = load<Pair>(upper + 2 * static_cast<std::int64_t>(side));
+      const Pair between = above + shares_y[i] * (below - above);
+      const Pair right = __builtin_shufflevector(between, between, 2, 3, 2, 3);
+      const Pair mixed = between + shares_x[i] * (right - between);
+      means[i] = mixed[0], mean_squares[i] = mixed[1];
+    }
+    return {load_float(means), load_float(mean_squares)};
+  }
+
+#define float Float
+#define bool Mask
+#include "renderer/shaders/lights.glsl"
+#undef float
+#undef bool
+#undef uint
+
+  static Light light_of(const PackedLight& packed) {
+    Light light;
+    light.position_ws = all_lanes(packed.position_ws);
+    light.inverse_range = packed.inverse_range;
+    light.direction_ws = all_lanes(packed.direction_ws);
+    light.kind = packed.kind;
+    light.intensity = all_lanes(packed.intensity);
+    light.spot_scale = packed.spot_scale;
+    light.spot_offset = packed.spot_offset;
+    light.shadow_far_m = packed.shadow_far_m;
+    light.first_shadow_layer = packed.first_shadow_layer;
+    for (int i = 0; i < 4; ++i) {
+      const float* column = packed.shadow_clip_from_world[i];
+      light.shadow_clip_from_world.columns[i] = vec4(column[0], column[1], column[2], column[3]);
+    }
+    return light;
+  }
+
+  // reflected_punctual_light(), but that nothing is done for light that reaches no lane from the front.
+  vec3 reflected(Mask wanted, const Brdf& brdf, vec3 position_ws, vec3 normal_ws, vec3 out_ws) {
+    vec3 radiance(0.0);
+    for (std::uint32_t i = 0; i < environment_.light_count; ++i) {
+      const Light light = light_of(environment_.lights[i]);
+      const LightSample at = light_at(light, position_ws);
+      const Float most = max(at.irradiance.x, max(at.irradiance.y, at.irradiance.z));
+      if (!any(wanted && most > 0.0 && dot(normal_ws, at.to_light_ws) > 0.0)) continue;
+      radiance += brdf_times_cosine(brdf, normal_ws, out_ws, at.to_light_ws) * at.irradiance *
+                  light_visibility(light, position_ws, normal_ws, at.to_light_ws);
+    }
+    return radiance;
+  }
+
+ private:
+  const LightEnvironment& environment_;
+
+ public:
+  Float shadow_least_variance, shadow_cube_scale;
+};
+
+}  // namespace
+}  // namespace lightwell::lanes

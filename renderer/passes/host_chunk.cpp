@@ -1,0 +1,141 @@
+#include "renderer/passes/host_chunk.h"
+
+#include <cstring>
+#include <limits>
+#include <span>
+
+namespace lightwell {
+
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+HostChunk::HostChunk(const HostBatch& batch, TriangleCache& triangles, std::uint32_t begin, std::uint32_t end)
+    : batch_(batch),
+      triangles_(triangles),
+      first_(begin),
+      count_(end - begin),
+      surfaces_(batch.group_count + kMoreCandidates),
+      candidates_(surfaces_.size()),
+      candidate_hits_(surfaces_.size()) {
+  lanes::PackedReceivers packed;
+  std::memset(&packed, 0, sizeof packed);  // what lies beyond the last pixel is computed with, too
+  std::memset(&pixels_, 0, sizeof pixels_);
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const PackedReceiver& receiver = batch.receivers[begin + i];
+    packed.normal[i] = receiver.normal;
+    packed.geometric_normal[i] = receiver.geometric_normal;
+    packed.base_color_rg[i] = receiver.base_color_rg;
+    packed.base_color_b_metallic[i] = receiver.base_color_b_metallic;
+    packed.material_roughness[i] = receiver.material_roughness;
+    packed.dielectric[i] = receiver.dielectric;
+    packed.to_camera[i] = receiver.to_camera;
+    add_origin(i, batch.origins[begin + i]);
+  }
+  kernels_.unpack(packed, pixels_);
+}
+
+void HostChunk::run() {
+  for (std::uint32_t direction = 0; direction < batch_.direction_count; ++direction)
+    for (std::uint32_t r = 0; r < run_count_; ++r) gather(runs_[r], direction);
+  scattered_.finish();
+}
+
+void HostChunk::add_to(glm::vec4* sums, bool is_first) const {
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const glm::vec3 sum(pixels_.sum[0][i], pixels_.sum[1][i], pixels_.sum[2][i]);
+    const float hits = pixels_.hit_count[i];
+    glm::vec4& out = sums[first_ + i];
+    out = is_first ? glm::vec4(sum, hits > 0.0f ? pixels_.distance[i] / hits : 0.0f) : out + glm::vec4(sum, 0.0f);
+  }
+}
+
+void HostChunk::add_origin(std::uint32_t i, const PixelOrigin& origin) {
+  for (int axis = 0; axis < 3; ++axis) {
+    pixels_.above[axis][i] = origin.above_ws[axis];
+    pixels_.down[axis][i] = origin.down_ws[axis];
+  }
+  if (origin.patch_index == kNoPatch) return;
+  if (run_count_ == 0 || runs_[run_count_ - 1].pixels.end != i ||
+      runs_[run_count_ - 1].patch_index != origin.patch_index)
+    runs_[run_count_++] = {{i, i}, origin.patch_index};
+  ++runs_[run_count_ - 1].pixels.end;
+}
+
+void HostChunk::gather(const PatchRun& run, std::uint32_t direction_index) {
+  const std::size_t ray = std::size_t{direction_index} * batch_.patch_count + run.patch_index;
+  const lanes::PatchDirection& direction = batch_.directions[ray];
+  if (direction.pdf <= 0.0f) return;
+  kernels_.start_rays(pixels_, run.pixels, direction);
+  candidate_count_ = 0;
+  for (std::uint32_t group = 0; group < batch_.group_count; ++group) {
+    const Hit& candidate = batch_.candidates[std::size_t{group} * batch_.direction_count * batch_.patch_count + ray];
+    if (candidate.t >= 0.0f)
+      try_candidate(run.pixels, candidate.instance, candidate.triangle * batch_.group_count + group, direction);
+  }
+  if (batch_.trace_missed && candidate_count_ > 0) trace_missed(run.pixels, direction);
+  if (run.pixels.end - run.pixels.begin < kLongRun)
+    scatter(run.pixels, direction);
+  else
+    kernels_.gather(pixels_, run.pixels, direction, candidates_.data(), candidate_count_, batch_.environment);
+}
+
+void HostChunk::scatter(lanes::PixelRun run, const lanes::PatchDirection& direction) {
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    if (pixels_.t[i] < 0.0f) continue;
+    const bool is_hit = pixels_.t[i] < kNothing;
+    Hit hit = is_hit ? candidate_hits_[pixels_.candidate[i]] : Hit{kMiss, 0, 0, 0.0f, 0.0f};
+    if (is_hit) hit.t = pixels_.t[i], hit.u = pixels_.u[i], hit.v = pixels_.v[i];
+    scattered_.add(i, direction, hit);
+  }
+}
+
+void HostChunk::try_candidate(lanes::PixelRun run, std::uint32_t instance, std::uint32_t triangle,
+                              const lanes::PatchDirection& direction) {
+  const PlacedTriangle& placed = triangles_.at(instance, triangle);
+  const lanes::AffineTriangle affine = affine_triangle(placed.corners_ws, along(direction));
+  kernels_.meet(pixels_, run, affine, candidate_count_);
+  add_candidate(placed, along(direction));
+}
+
+void HostChunk::add_candidate(const PlacedTriangle& placed, glm::vec3 direction) {
+  surfaces_[candidate_count_] = placed.surface;
+  candidates_[candidate_count_] = {&surfaces_[candidate_count_], side_of(placed.surface, direction)};
+  candidate_hits_[candidate_count_] = {kMiss, placed.instance, placed.triangle, 0.0f, 0.0f};
+  ++candidate_count_;
+}
+
+// Pixels that meet no candidate trace the ray themselves. A few triangles so found become candidates.
+void HostChunk::trace_missed(lanes::PixelRun run, const lanes::PatchDirection& direction) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = run.begin; i < run.end; ++i) {
+    if (pixels_.t[i] < kNothing) continue;
+    missed_[count] = i;
+    missed_rays_[count++] = {
+        {pixels_.from[0][i], pixels_.from[1][i], pixels_.from[2][i]}, 0.0f, along(direction), 1e30f};
+  }
+  batch_.tracer.closest_hits(std::span(missed_rays_).first(count), std::span(missed_hits_).first(count));
+  for (std::uint32_t n = 0; n < count; ++n)
+    if (missed_hits_[n].t >= 0.0f) keep_hit(missed_[n], direction, missed_hits_[n]);
+  traced_ += count;
+}
+
+void HostChunk::keep_hit(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit) {
+  std::uint32_t candidate = 0;
+  while (candidate < candidate_count_ &&
+         (candidate_hits_[candidate].instance != hit.instance || candidate_hits_[candidate].triangle != hit.triangle))
+    ++candidate;
+  if (candidate == batch_.group_count + kMoreCandidates) {
+    pixels_.t[pixel] = kMiss;
+    return scattered_.add(pixel, direction, hit);
+  }
+  if (candidate == candidate_count_) add_candidate(triangles_.at(hit.instance, hit.triangle), along(direction));
+  pixels_.t[pixel] = hit.t;
+  pixels_.u[pixel] = hit.u;
+  pixels_.v[pixel] = hit.v;
+  pixels_.candidate[pixel] = candidate;
+}
+
+}  // namespace lightwell

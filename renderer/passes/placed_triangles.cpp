@@ -1,0 +1,86 @@
+#include "renderer/passes/placed_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/passes/device_types.h"
+
+namespace lightwell {
+
+namespace {
+
+void assign(float (&to)[3], glm::vec3 from) {
+  to[0] = from.x, to[1] = from.y, to[2] = from.z;
+}
+
+// As unit_from_octahedral() in shaders/packing.glsl.
+glm::vec3 unpack_octahedral(std::uint32_t packed) {
+  const auto number = [](std::uint32_t half) {
+    return std::max(static_cast<float>(static_cast<std::int16_t>(half)) / 32767.0f, -1.0f);
+  };
+  const glm::vec2 octahedral(number(packed & 0xffffu), number(packed >> 16));
+  glm::vec3 unit(octahedral, 1.0f - std::abs(octahedral.x) - std::abs(octahedral.y));
+  const float fold = std::max(-unit.z, 0.0f);
+  unit.x += unit.x >= 0.0f ? -fold : fold;
+  unit.y += unit.y >= 0.0f ? -fold : fold;
+  return glm::normalize(unit);
+}
+
+// As transform_normal() in shaders/scene_data.glsl; not unit.
+glm::vec3 transform_normal(const DeviceInstance& instance, glm::vec3 normal) {
+  const glm::vec3 r0(instance.world_from_object[0]), r1(instance.world_from_object[1]),
+      r2(instance.world_from_object[2]);
+  const glm::vec3 cofactor(glm::dot(glm::cross(r1, r2), normal), glm::dot(glm::cross(r2, r0), normal),
+                           glm::dot(glm::cross(r0, r1), normal));
+  return (instance.flags & kDeviceInstanceMirrored) != 0 ? -cofactor : cofactor;
+}
+
+// As hit_point() in shaders/hit_surface.glsl, up to what depends on the ray and the place within the triangle.
+lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32_t instance_index,
+                              std::uint32_t triangle_index) {
+  const DeviceInstance& instance = scene.instances[instance_index];
+  const DeviceTriangle& triangle = scene.triangles[instance.first_triangle + triangle_index];
+  const DeviceMaterial& material = scene.materials[instance.material];
+  lanes::HitSurface surface;
+  for (int corner = 0; corner < 3; ++corner)
+    assign(surface.normals[corner], transform_normal(instance, unpack_octahedral(triangle.normals[corner])));
+  assign(surface.geometric_normal,
+         glm::normalize(transform_normal(instance, unpack_octahedral(triangle.geometric_normal))));
+  assign(surface.base_color, glm::clamp(glm::vec3(material.base_color), 0.0f, 1.0f));
+  surface.metallic = std::clamp(material.metallic, 0.0f, 1.0f);
+  surface.roughness = material.roughness;
+  surface.f0_dielectric = material.f0_dielectric;
+  surface.specular_factor = material.specular_factor;
+  assign(surface.emission, material.emission);
+  surface.unlit = (material.flags & kDeviceMaterialUnlit) != 0;
+  return surface;
+}
+
+}  // namespace
+
+float side_of(const lanes::HitSurface& surface, glm::vec3 direction) {
+  const float* normal = surface.geometric_normal;
+  return glm::dot(glm::vec3(normal[0], normal[1], normal[2]), direction) > 0.0f ? -1.0f : 1.0f;
+}
+
+lanes::AffineTriangle affine_triangle(const std::array<glm::vec3, 3>& corners, glm::vec3 direction) {
+  const glm::vec3 b = corners[1] - corners[0], c = corners[2] - corners[0];
+  const glm::vec3 across = glm::cross(direction, c);
+  const float inverse = 1.0f / glm::dot(b, across);  // infinite for a ray in the plane: nothing compares true with NaN
+  lanes::AffineTriangle affine;
+  assign(affine.corner, corners[0]);
+  assign(affine.u, across * inverse);
+  assign(affine.v, glm::cross(b, direction) * inverse);
+  assign(affine.t, glm::cross(b, c) * inverse);
+  return affine;
+}
+
+const PlacedTriangle& TriangleCache::at(std::uint32_t instance, std::uint32_t triangle) {
+  constexpr std::uint32_t kStride = 37;  // so that instances of one mesh do not share places
+  PlacedTriangle& placed = placed_[(triangle + instance * kStride) % placed_.size()];
+  if (placed.instance != instance || placed.triangle != triangle)
+    placed = {instance, triangle, tracer_.corners_ws(instance, triangle), hit_surface(scene_, instance, triangle)};
+  return placed;
+}
+
+}  // namespace lightwell
