@@ -141,18 +141,16 @@ HitSurfaces surfaces_of(const ScatteredRays& rays, std::uint32_t i) {
   return surfaces;
 }
 
-// As light_of_hit() in passes/hit_light.comp.
-vec3 light_of_hits(const PatchPixels& pixels, std::uint32_t i, Mask wanted, vec3 along, const HitSurfaces& surfaces,
-                   Lighting& lighting) {
-  const Float t = load_float(&pixels.t[i]), u = load_float(&pixels.u[i]), v = load_float(&pixels.v[i]);
+vec3 normals_of(const PatchPixels& pixels, std::uint32_t i, vec3 along, const HitSurfaces& surfaces) {
+  const Float u = load_float(&pixels.u[i]), v = load_float(&pixels.v[i]);
   const vec3 interpolated =
       normalize(surfaces.normals[0] * (1.0 - u - v) + surfaces.normals[1] * u + surfaces.normals[2] * v);
-  const vec3 normal_ws = visible_shading_normal(interpolated, surfaces.geometric_normal, -along);
-  const Brdf brdf = make_brdf(surfaces.base_color, surfaces.metallic, surfaces.roughness, surfaces.f0_dielectric,
-                              surfaces.specular_factor);
-  const vec3 position_ws = load_vec3(pixels.from, i) + select(wanted, t, 0.0) * along;
-  const vec3 light = surfaces.emission + lighting.reflected(wanted, brdf, position_ws, normal_ws, -along);
-  return select(surfaces.lit, light, vec3(0.0));
+  return visible_shading_normal(interpolated, surfaces.geometric_normal, -along);
+}
+
+Brdf brdf_of(const HitSurfaces& surfaces) {
+  return make_brdf(surfaces.base_color, surfaces.metallic, surfaces.roughness, surfaces.f0_dielectric,
+                   surfaces.specular_factor);
 }
 
 vec3 sky_of(const LightEnvironment& environment, Float up) {
@@ -160,30 +158,84 @@ vec3 sky_of(const LightEnvironment& environment, Float up) {
                       all_lanes(environment.ground_radiance), up);
 }
 
-// As main() in passes/gather.comp. All in one function: structs passed through memory would cost more than they do.
-__attribute__((flatten)) void gather(PatchPixels& pixels, PixelRun run, const PatchDirection& direction,
-                                     const Candidate* candidates, std::uint32_t candidate_count,
-                                     const LightEnvironment& environment) {
+void add_to_sum(PatchPixels& pixels, std::uint32_t i, vec3 light) {
+  store_vec3(pixels.sum, i, load_vec3(pixels.sum, i) + light);
+}
+
+// Weights of the direction, distances of the hits, and the light of the sky.
+__attribute__((flatten)) void weigh(PatchPixels& pixels, PixelRun run, const PatchDirection& direction,
+                                    const LightEnvironment& environment) {
   const vec3 along = all_lanes(direction.direction_ws);
-  Lighting lighting(environment);
   for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
     const Float t = load_float(&pixels.t[i]);
     const Mask hit = in_run(i, run) && t >= 0.0 && t < kNothing;
     const Mask missed = in_run(i, run) && t >= kNothing;
     store(&pixels.distance[i], (load_float(&pixels.distance[i]) + select(hit, t, 0.0)).v);
     store(&pixels.hit_count[i], (load_float(&pixels.hit_count[i]) + select(hit, 1.0, 0.0)).v);
-    const vec3 weight = weight_of(receiver_of(pixels, i), along, direction.pdf);
-    const Mask weighs = (hit || missed) && weight.x + weight.y + weight.z > 0.0;
-    if (!any(weighs)) continue;
-    vec3 light(0.0);
-    if (any(missed && weighs)) light = select(missed, sky_of(environment, along.y), light);
-    for (std::uint32_t n = 0; n < candidate_count; ++n) {
-      const Ints number = Ints{} + static_cast<std::int32_t>(n);
-      const Mask wanted = hit && weighs && equal(load<Ints>(&pixels.candidate[i]), number);
-      if (!any(wanted)) continue;
-      light = select(wanted, light_of_hits(pixels, i, wanted, along, all_lanes(candidates[n]), lighting), light);
-    }
-    store_vec3(pixels.sum, i, load_vec3(pixels.sum, i) + select(weighs, weight * light, vec3(0.0)));
+    const vec3 weight = select(hit || missed, weight_of(receiver_of(pixels, i), along, direction.pdf), vec3(0.0));
+    store_vec3(pixels.weight, i, weight);
+    if (any(missed)) add_to_sum(pixels, i, select(missed, weight * sky_of(environment, along.y), vec3(0.0)));
+  }
+}
+
+// Where the rays that weigh something meet the candidate; adds its own light. False if none do.
+__attribute__((flatten)) bool place_hits(PatchPixels& pixels, PixelRun run, vec3 along, std::uint32_t number,
+                                         const HitSurfaces& surfaces, const vec3* flat_normal) {
+  bool any_lit = false;
+  for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
+    const Float t = load_float(&pixels.t[i]);
+    const vec3 weight = load_vec3(pixels.weight, i);
+    const Mask of_candidate = equal(load<Ints>(&pixels.candidate[i]), Ints{} + static_cast<std::int32_t>(number));
+    const Mask lit = of_candidate && t >= 0.0 && t < kNothing && weight.x + weight.y + weight.z > 0.0 && surfaces.lit;
+    store(&pixels.is_lit[i], select(lit, 1.0, 0.0).v);
+    if (!any(lit)) continue;
+    any_lit = true;
+    store_vec3(pixels.hit_position, i, load_vec3(pixels.from, i) + select(lit, t, 0.0) * along);
+    store_vec3(pixels.hit_normal, i, flat_normal ? *flat_normal : normals_of(pixels, i, along, surfaces));
+    add_to_sum(pixels, i, select(lit, weight * surfaces.emission, vec3(0.0)));
+  }
+  return any_lit;
+}
+
+// Adds what a light brings by the hits of the candidate at hand. Nothing is done where it reaches none from the front;
+// of a light without a place and a flat triangle all but the shadow is the same for all.
+__attribute__((flatten)) void add_light(PatchPixels& pixels, PixelRun run, vec3 out_ws, const Brdf& brdf,
+                                        Lighting& lighting, const Lighting::Light& light, const vec3* flat_normal) {
+  const bool is_even = flat_normal != nullptr && light.kind == 0;
+  vec3 even_light(0.0);
+  if (is_even) {
+    const Lighting::LightSample at = lighting.light_at(light, vec3(0.0));
+    even_light = brdf_times_cosine(brdf, *flat_normal, out_ws, at.to_light_ws) * at.irradiance;
+    if (!any(even_light.x + even_light.y + even_light.z > 0.0)) return;
+  }
+  for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
+    const Mask lit = load_float(&pixels.is_lit[i]) > 0.0;
+    if (!any(lit)) continue;
+    const vec3 position_ws = load_vec3(pixels.hit_position, i), normal_ws = load_vec3(pixels.hit_normal, i);
+    const Lighting::LightSample at = lighting.light_at(light, position_ws);
+    const Float most = max(at.irradiance.x, max(at.irradiance.y, at.irradiance.z));
+    if (!any(lit && most > 0.0 && dot(normal_ws, at.to_light_ws) > 0.0)) continue;
+    const vec3 reflected =
+        is_even ? even_light : brdf_times_cosine(brdf, normal_ws, out_ws, at.to_light_ws) * at.irradiance;
+    const vec3 arriving = reflected * lighting.light_visibility(light, position_ws, normal_ws, at.to_light_ws);
+    add_to_sum(pixels, i, select(lit, load_vec3(pixels.weight, i) * arriving, vec3(0.0)));
+  }
+}
+
+// As main() in passes/gather.comp over light_of_hit() in passes/hit_light.comp.
+void gather(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, const Candidate* candidates,
+            std::uint32_t candidate_count, const LightEnvironment& environment) {
+  const vec3 along = all_lanes(direction.direction_ws);
+  weigh(pixels, run, direction, environment);
+  Lighting lighting(environment);
+  for (std::uint32_t number = 0; number < candidate_count; ++number) {
+    const HitSurfaces surfaces = all_lanes(candidates[number]);
+    const vec3 flat_normal = visible_shading_normal(normalize(surfaces.normals[0]), surfaces.geometric_normal, -along);
+    const vec3* const flat = candidates[number].surface->is_flat ? &flat_normal : nullptr;
+    if (!place_hits(pixels, run, along, number, surfaces, flat)) continue;
+    const Brdf brdf = brdf_of(surfaces);
+    for (std::uint32_t i = 0; i < environment.light_count; ++i)
+      add_light(pixels, run, -along, brdf, lighting, Lighting::light_of(environment.lights[i]), flat);
   }
 }
 
@@ -199,7 +251,11 @@ __attribute__((flatten)) void gather_scattered(PatchPixels& pixels, const Scatte
     store(&pixels.hit_count[i], (load_float(&pixels.hit_count[i]) + select(hit, 1.0, 0.0)).v);
     const vec3 weight = weight_of(receiver_of(pixels, i), along, load_float(&rays.pdf[i]));
     const Mask weighs = in_run(i, run) && weight.x + weight.y + weight.z > 0.0;
-    const vec3 from_hits = light_of_hits(pixels, i, hit && weighs, along, surfaces_of(rays, i), lighting);
+    const HitSurfaces surfaces = surfaces_of(rays, i);
+    const vec3 position_ws = load_vec3(pixels.from, i) + select(hit, t, 0.0) * along;
+    const vec3 reflected = lighting.reflected(hit && weighs, brdf_of(surfaces), position_ws,
+                                              normals_of(pixels, i, along, surfaces), -along);
+    const vec3 from_hits = select(surfaces.lit, surfaces.emission + reflected, vec3(0.0));
     const vec3 light = select(hit, from_hits, sky_of(environment, along.y));
     store_vec3(pixels.sum, i, load_vec3(pixels.sum, i) + select(weighs, weight * light, vec3(0.0)));
   }

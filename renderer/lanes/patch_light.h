@@ -31,6 +31,9 @@ struct alignas(64) PatchPixels {
   PixelFloats t, u, v;   // of the nearest candidate that a pixel's ray meets; t is infinite where there is none
   PixelWords candidate;  // which
 
+  PixelFloats weight[3];                               // of its light: f cos(theta) / pdf; 0 where there is no ray
+  PixelFloats hit_position[3], hit_normal[3], is_lit;  // 1 where the candidate at hand may be lit, else 0
+
   PixelFloats sum[3];    // of light times weight, over the directions so far
   PixelFloats distance;  // sum over the hits, metres
   PixelFloats hit_count;
@@ -65,6 +68,7 @@ struct HitSurface {
   float metallic, roughness, f0_dielectric, specular_factor;
   float emission[3];  // nit
   bool unlit;         // neither reflects nor emits
+  bool is_flat;       // the normals are the same at all corners
 };
 
 /// A triangle that rays may meet.

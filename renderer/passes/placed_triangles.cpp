@@ -53,6 +53,7 @@ lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32
   surface.specular_factor = material.specular_factor;
   assign(surface.emission, material.emission);
   surface.unlit = (material.flags & kDeviceMaterialUnlit) != 0;
+  surface.is_flat = triangle.normals[0] == triangle.normals[1] && triangle.normals[1] == triangle.normals[2];
   return surface;
 }
 
