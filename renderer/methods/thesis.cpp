@@ -17,6 +17,10 @@ std::uint32_t directions_per_host_batch(std::uint32_t patches, const Settings& s
   return std::clamp(most, 1u, static_cast<std::uint32_t>(settings.samples));
 }
 
+bool needs_guide(const Settings& settings) {
+  return settings.denoise || settings.view == ViewKind::kOcclusionDistance;
+}
+
 // Whether the processor scales up and gathers: views of records need records, and so do further bounces.
 bool gathers_on_host(const FrameContext& frame) {
   const Settings& settings = frame.settings;
@@ -270,7 +274,8 @@ void ThesisMethod::gather_on_host(FrameContext& frame, const GBuffer& g_buffer, 
                                         {rays, candidates_, groups, frame.settings.trace_missed});
     frame.timer.mark("gather");
   }
-  gather_pass_.run_summed(g_buffer, grid, *active_blocks_, host_gather_pass_.sums(), samples, all_bounces_);
+  gather_pass_.run_summed(g_buffer, grid, *active_blocks_, host_gather_pass_.sums(), samples,
+                          needs_guide(frame.settings), all_bounces_);
   if (frame.settings.denoise) filter_pass_.run(gather_pass_.guide(), all_bounces_);
   frame.timer.mark("gather");
 }
@@ -292,7 +297,7 @@ void ThesisMethod::gather_bounce(FrameContext& frame, const GBuffer& g_buffer, c
       hit_light_pass_.run_from_screen(screen->g_buffer, rays, occlusion_, screen->map);
     frame.timer.mark(first_bounce ? "light of hits" : "light from screen");
     gather_pass_.run(frame.scene, g_buffer, grid, *active_blocks_, rays, occlusion_,
-                     {samples, literal, first_bounce && !literal}, bounce_);
+                     {samples, literal, first_bounce && !literal, needs_guide(frame.settings)}, bounce_);
     frame.timer.mark("gather");
   }
 }

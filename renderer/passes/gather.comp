@@ -1,6 +1,7 @@
 // Renders the indirect lighting map (thesis 4.2, Algorithm 2): the light of a pixel's hits, weighted by its BRDF.
 // Corrected: 1/N sum f cos L / pdf, the BRDF being the pixel's and the pdf the patch's that its directions come from.
 // SUMMED: the sum is made already, by HostGatherPass.
+// GUIDE: the first batch brings what the filter and the view of distances need.
 // LITERAL: the plain sum of what hit_light.comp weighted as printed, over r^2.
 // The map holds light over directional albedo, so that textures do not pass through its low resolution.
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -23,8 +24,10 @@ layout(binding = UNIT_ARRIVING) uniform samplerBuffer arriving;  // radiance of 
 layout(binding = UNIT_DIRECTIONS) uniform samplerBuffer directions;  // of the patches, with their pdf
 #endif
 layout(rgba32f, binding = 0) uniform image2D indirect_map;  // premultiplied by validity in a
+#ifdef GUIDE
 layout(r32f, binding = 1) uniform image2D occlusion_distance;  // mean distance of the hits, metres
 layout(rgba32ui, binding = 2) writeonly uniform uimage2D guide;  // what the filter compares, see indirect_filter.comp
+#endif
 
 uniform uint direction_count;  // in this batch
 uniform uint total_directions; // in all batches
@@ -105,8 +108,10 @@ void main() {
   const vec3 demodulated = point.valid ? sum / albedo : vec3(0.0);
   const vec4 before = first_batch == 1 ? vec4(0.0) : imageLoad(indirect_map, map_pixel);
   imageStore(indirect_map, map_pixel, vec4(before.rgb + demodulated, point.valid ? 1.0 : 0.0));
+#ifdef GUIDE
   if (first_batch == 0) return;
   imageStore(occlusion_distance, map_pixel, vec4(light.w));
   imageStore(guide, map_pixel,
              uvec4(floatBitsToUint(point.position_ws), pack_normal_roughness(point.normal_ws, sqrt(point.brdf.alpha))));
+#endif
 }

@@ -6,6 +6,14 @@
 
 namespace lightwell {
 
+namespace {
+
+gl::Defines guide_defines(bool with_guide) {
+  return with_guide ? gl::Defines{"GUIDE 1"} : gl::Defines{};
+}
+
+}  // namespace
+
 IndirectMap make_indirect_map(glm::ivec2 size_px) {
   gl::TextureOptions options;
   options.min_filter = options.mag_filter = GL_LINEAR;
@@ -46,10 +54,11 @@ void GatherPass::dispatch(const Variant& variant, const IndirectMap& map) {
 }
 
 void GatherPass::run_summed(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
-                            const gl::BufferTexture& sums, std::uint32_t total_directions, IndirectMap& map) {
+                            const gl::BufferTexture& sums, std::uint32_t total_directions, bool with_guide,
+                            IndirectMap& map) {
   bind(g_buffer, blocks, map);
   sums.bind(UNIT_ARRIVING);
-  Variant& variant = variants_.with({"SUMMED 1"});
+  Variant& variant = variants_.with(gl::joined({"SUMMED 1"}, guide_defines(with_guide)));
   variant.grid.set(grid, blocks.slots());
   variant.total_directions = total_directions;
   variant.first_batch = 1;
@@ -65,8 +74,9 @@ void GatherPass::run(const DeviceScene& scene, const GBuffer& g_buffer, const In
   occlusion.arriving_texels.bind(UNIT_ARRIVING);
   occlusion.hit_texels.bind(UNIT_HITS);
   occlusion.bind_cleared();
-  const gl::Defines kind =
+  gl::Defines kind =
       gathering.literal ? gl::Defines{"LITERAL 1"} : gl::joined(scene.environment_defines(), scene.brdf_defines());
+  kind = gl::joined(kind, guide_defines(gathering.with_guide));
   Variant& variant = variants_.with(gl::joined(gl::joined(kind, rays.patches.defines()),
                                                gathering.literal ? gl::Defines{} : occlusion.clear_defines()));
   variant.grid.set(grid, blocks.slots());

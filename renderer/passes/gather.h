@@ -23,6 +23,7 @@ struct Gathering {
   std::uint32_t total_directions;
   bool literal;                 // the sum as Algorithm 2 prints it
   bool misses_see_environment;  // in the first bounce, corrected
+  bool with_guide;              // makes occlusion_distance() and guide() in the first batch
 };
 
 class GatherPass {
@@ -37,7 +38,7 @@ class GatherPass {
   /// Makes `map` of sums that are made already: a vec4 a slot, light times weight over all directions and the mean
   /// distance of the hits, metres.
   void run_summed(const GBuffer& g_buffer, const IndirectMapGrid& grid, const ActiveBlocks& blocks,
-                  const gl::BufferTexture& sums, std::uint32_t total_directions, IndirectMap& map);
+                  const gl::BufferTexture& sums, std::uint32_t total_directions, bool with_guide, IndirectMap& map);
 
   /// Mean distance of a pixel's hits in the first batch, metres (R32F).
   const gl::Texture& occlusion_distance() const { return occlusion_distance_; }

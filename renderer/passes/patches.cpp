@@ -77,6 +77,7 @@ const Patches& PatchesPass::run(const GBuffer& g_buffer, const IndirectMapGrid& 
   g_buffer.bind();
   blocks.texels.bind(UNIT_ACTIVE_BLOCKS);
   patches_.points.bind_storage(BINDING_PATCH_POINTS);
+  patches_.point_texels.bind(UNIT_PATCH_POINTS);
   patches_.references.bind_storage(BINDING_REFERENCES);
   patches_.pixel_origins.bind_storage(BINDING_PIXEL_ORIGINS);
   unmatched_.bind_storage(BINDING_OUTPUT);

@@ -9,13 +9,15 @@ layout(local_size_x = 256) in;  // a block of the map
 #include "shaders/patches.glsl"
 #include "shaders/similarity.glsl"
 
-layout(std430, binding = BINDING_PATCH_POINTS) readonly buffer PatchPoints { uvec4 patch_points[]; };
+layout(binding = UNIT_PATCH_POINTS) uniform usamplerBuffer patch_points;  // 2 texels a patch
 layout(std430, binding = BINDING_REFERENCES) writeonly buffer References { uint references[]; };  // one a slot
 layout(std430, binding = BINDING_OUTPUT) writeonly buffer Unmatched { uint unmatched[]; };        // how many, one a block
 
 shared uint unmatched_bits[8];
 
-PatchPoint fetch_patch(uint index) { return unpack_patch_point(patch_points[2u * index], patch_points[2u * index + 1u]); }
+PatchPoint fetch_patch(uint index) {
+  return unpack_patch_point(texelFetch(patch_points, int(2u * index)), texelFetch(patch_points, int(2u * index + 1u)));
+}
 
 // The similar one among the neighbours of the pixel's patch whose seed is nearest; kNoPatch if there is none.
 uint similar_neighbour(PatchPoint point, ivec2 map_pixel) {

@@ -12,19 +12,17 @@ layout(local_size_x = 64) in;
 layout(std430, binding = BINDING_PATCH_POINTS) writeonly buffer PatchPoints { uvec4 patch_points[]; };  // 2 a patch
 
 PatchPoint seed_of_patch(ivec2 corner, int side) {
-  PatchPoint seed = point_of_pixel(corner);
+  ivec2 seed = corner;
   int least = 1 << 30;
   for (int i = 0; i < side * side; ++i) {
     const ivec2 place = ivec2(i & (side - 1), i >> log2_patch_side);
     const ivec2 off_middle = 2 * place - side;
     const int distance2 = off_middle.x * off_middle.x + off_middle.y * off_middle.y;
-    const PatchPoint point = point_of_pixel(corner + place);
-    if (point.valid && distance2 < least) {
-      least = distance2;
-      seed = point;
-    }
+    const bool nearer = distance2 < least && sees_surface(corner + place);
+    least = nearer ? distance2 : least;
+    seed = nearer ? corner + place : seed;
   }
-  return seed;
+  return point_of_pixel(seed);
 }
 
 PatchPoint mean_of_similar(PatchPoint seed, ivec2 corner, int side) {

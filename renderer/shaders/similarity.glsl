@@ -18,13 +18,23 @@ bool is_similar(PatchPoint a, PatchPoint b) {
          dot(a.normal_ws, b.normal_ws) > normal_threshold;
 }
 
+bool is_inside(ivec2 map_pixel) {
+  return all(greaterThanEqual(map_pixel, ivec2(0))) && all(lessThan(map_pixel, indirect_size_px));
+}
+ivec2 pixel_within(ivec2 map_pixel) {
+  return representative_pixel(clamp(map_pixel, ivec2(0), indirect_size_px - 1));
+}
+
+bool sees_surface(ivec2 map_pixel) {
+  return texelFetch(g_depth, pixel_within(map_pixel), 0).r > 0.0 && is_inside(map_pixel);
+}
+
 // A pixel of the map as a patch of its own; not valid outside the map and where nothing is seen.
 PatchPoint point_of_pixel(ivec2 map_pixel) {
-  const bool inside = all(greaterThanEqual(map_pixel, ivec2(0))) && all(lessThan(map_pixel, indirect_size_px));
-  const ivec2 pixel = representative_pixel(clamp(map_pixel, ivec2(0), indirect_size_px - 1));
+  const ivec2 pixel = pixel_within(map_pixel);
   const float depth = texelFetch(g_depth, pixel, 0).r;
   const float safe_depth = depth > 0.0 ? depth : 1.0;
-  return PatchPoint(inside && depth > 0.0, map_pixel, position_from_depth(vec2(pixel) + 0.5, safe_depth),
+  return PatchPoint(is_inside(map_pixel) && depth > 0.0, map_pixel, position_from_depth(vec2(pixel) + 0.5, safe_depth),
                     unit_from_octahedral(unpackSnorm2x16(texelFetch(g_surface, pixel, 0).x)), view_depth(safe_depth),
                     texelFetch(g_material, pixel, 0).x & 0xffffu);
 }
