@@ -1,5 +1,6 @@
 #include "server/service.h"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -20,11 +21,17 @@ constexpr std::size_t kEncoders = 2;
 constexpr auto kHousekeepingInterval = std::chrono::seconds(1);
 constexpr glm::ivec2 kWarmUpSize(64, 64);
 
+/// What sessions begin with is never more than what they may ask for.
+ServeOptions with_settings_within_limits(ServeOptions options) {
+  options.settings.samples = std::min(options.settings.samples, options.limits.max_samples);
+  return options;
+}
+
 }  // namespace
 
 Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source,
                       std::function<int()> open_connections)
-    : options(serve_options),
+    : options(with_settings_within_limits(serve_options)),
       access(options.access),
       connections(std::move(open_connections)),
       scenes(options.limits),
@@ -38,8 +45,9 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                    [this] { render_loop.wake(); },
                    [this] { return render_loop.is_ready() ? render_loop.ready().get().device : std::string(); },
                    [this] {
-                     return render_loop.is_ready() ? render_loop.ready().get().methods
-                                                   : std::vector<std::string>{"thesis"};
+                     return render_loop.is_ready()
+                                ? render_loop.ready().get().methods
+                                : std::vector<std::string>{std::string(name_of(options.settings.method))};
                    },
                    [this] { return codecs(); },
                    [this](std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account) {

@@ -153,6 +153,23 @@ TEST_F(ApiTest, AccumulatesAsManyFramesAsAsked) {
   EXPECT_TRUE(requests.back().accumulate);
 }
 
+class FewSamplesTest : public ServerTest {
+ protected:
+  FewSamplesTest() : ServerTest(options()) {}
+
+  static ServeOptions options() {
+    ServeOptions options = test_options();
+    options.limits.max_samples = 16;
+    return options;
+  }
+};
+
+TEST_F(FewSamplesTest, WhatNamesNoSamplesHasNoMoreThanItMayAskFor) {
+  const json session = json::parse(ask("GET", "/v1/sessions/" + make_session()).body);
+  EXPECT_EQ(session["settings"]["samples"], 16);
+  EXPECT_EQ(ask("POST", "/v1/render", {{"scene", "cornell"}, {"width", 8}, {"height", 8}}).status, 200);
+}
+
 TEST_F(ApiTest, NamesWhatIsWrongWithARenderRequest) {
   struct Case {
     json change;

@@ -64,6 +64,19 @@ std::set<std::string> words_of(const std::string& list) {
   return words;
 }
 
+TEST_F(OpenApiTest, TellsTheSettingsThatTheServerBeginsWith) {
+  const json begun = json::parse(ask("GET", "/v1/sessions/" + session_).body)["settings"];
+  const json& properties = document_["components"]["schemas"]["Settings"]["properties"];
+  for (const auto& [name, value] : begun.items()) {
+    ASSERT_TRUE(properties.at(name).contains("default")) << name;
+    const json& told = properties.at(name)["default"];
+    if (told.is_number())
+      EXPECT_NEAR(told.get<double>(), value.get<double>(), 1e-6) << name;
+    else
+      EXPECT_EQ(told, value) << name;
+  }
+}
+
 TEST_F(OpenApiTest, IsServed) {
   const Answer answer = ask("GET", "/v1/openapi.json");
   EXPECT_EQ(answer.field("Content-Type"), "application/json");
