@@ -95,9 +95,9 @@ void HostChunk::scatter(lanes::PixelRun run, const lanes::PatchDirection& direct
 void HostChunk::try_candidate(lanes::PixelRun run, std::uint32_t instance, std::uint32_t triangle,
                               const lanes::PatchDirection& direction) {
   const PlacedTriangle& placed = triangles_.at(instance, triangle);
-  const lanes::AffineTriangle affine = affine_triangle(placed.corners_ws, along(direction));
+  const lanes::AffineTriangle affine = lanes::affine_triangle(placed.corners_ws, lanes::along(direction));
   kernels_.meet(pixels_, run, affine, candidate_count_);
-  add_candidate(placed, along(direction));
+  add_candidate(placed, lanes::along(direction));
 }
 
 void HostChunk::add_candidate(const PlacedTriangle& placed, glm::vec3 direction) {
@@ -114,7 +114,7 @@ void HostChunk::trace_missed(lanes::PixelRun run, const lanes::PatchDirection& d
     if (pixels_.t[i] < kNothing) continue;
     missed_[count] = i;
     missed_rays_[count++] = {
-        {pixels_.from[0][i], pixels_.from[1][i], pixels_.from[2][i]}, 0.0f, along(direction), 1e30f};
+        {pixels_.from[0][i], pixels_.from[1][i], pixels_.from[2][i]}, 0.0f, lanes::along(direction), 1e30f};
   }
   batch_.tracer.closest_hits(std::span(missed_rays_).first(count), std::span(missed_hits_).first(count));
   for (std::uint32_t n = 0; n < count; ++n)
@@ -131,7 +131,7 @@ void HostChunk::keep_hit(std::uint32_t pixel, const lanes::PatchDirection& direc
     pixels_.t[pixel] = kMiss;
     return scattered_.add(pixel, direction, hit);
   }
-  if (candidate == candidate_count_) add_candidate(triangles_.at(hit.instance, hit.triangle), along(direction));
+  if (candidate == candidate_count_) add_candidate(triangles_.at(hit.instance, hit.triangle), lanes::along(direction));
   pixels_.t[pixel] = hit.t;
   pixels_.u[pixel] = hit.u;
   pixels_.v[pixel] = hit.v;

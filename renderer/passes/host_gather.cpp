@@ -17,9 +17,7 @@ struct HostGatherPass::Lights {
 
 namespace {
 
-void assign(float (&to)[3], glm::vec3 from) {
-  to[0] = from.x, to[1] = from.y, to[2] = from.z;
-}
+using lanes::assign;
 
 template <class T>
 const T* host_of(const gl::Buffer& buffer) {

@@ -9,9 +9,7 @@ namespace lightwell {
 
 namespace {
 
-void assign(float (&to)[3], glm::vec3 from) {
-  to[0] = from.x, to[1] = from.y, to[2] = from.z;
-}
+using lanes::assign;
 
 // As unit_from_octahedral() in shaders/packing.glsl.
 glm::vec3 unpack_octahedral(std::uint32_t packed) {
@@ -26,13 +24,12 @@ glm::vec3 unpack_octahedral(std::uint32_t packed) {
   return glm::normalize(unit);
 }
 
-// As transform_normal() in shaders/scene_data.glsl; not unit.
-glm::vec3 transform_normal(const DeviceInstance& instance, glm::vec3 normal) {
+// What transform_normal() in shaders/scene_data.glsl does to a normal, before it is made a unit vector.
+glm::mat3 normals_to_world(const DeviceInstance& instance) {
   const glm::vec3 r0(instance.world_from_object[0]), r1(instance.world_from_object[1]),
       r2(instance.world_from_object[2]);
-  const glm::vec3 cofactor(glm::dot(glm::cross(r1, r2), normal), glm::dot(glm::cross(r2, r0), normal),
-                           glm::dot(glm::cross(r0, r1), normal));
-  return (instance.flags & kDeviceInstanceMirrored) != 0 ? -cofactor : cofactor;
+  const float sign = (instance.flags & kDeviceInstanceMirrored) != 0 ? -1.0f : 1.0f;
+  return sign * glm::transpose(glm::mat3(glm::cross(r1, r2), glm::cross(r2, r0), glm::cross(r0, r1)));
 }
 
 // As hit_point() in shaders/hit_surface.glsl, up to what depends on the ray and the place within the triangle.
@@ -41,11 +38,11 @@ lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32
   const DeviceInstance& instance = scene.instances[instance_index];
   const DeviceTriangle& triangle = scene.triangles[instance.first_triangle + triangle_index];
   const DeviceMaterial& material = scene.materials[instance.material];
+  const glm::mat3 to_world = normals_to_world(instance);
   lanes::HitSurface surface;
   for (int corner = 0; corner < 3; ++corner)
-    assign(surface.normals[corner], transform_normal(instance, unpack_octahedral(triangle.normals[corner])));
-  assign(surface.geometric_normal,
-         glm::normalize(transform_normal(instance, unpack_octahedral(triangle.geometric_normal))));
+    assign(surface.normals[corner], to_world * unpack_octahedral(triangle.normals[corner]));
+  assign(surface.geometric_normal, glm::normalize(to_world * unpack_octahedral(triangle.geometric_normal)));
   assign(surface.base_color, glm::clamp(glm::vec3(material.base_color), 0.0f, 1.0f));
   surface.metallic = std::clamp(material.metallic, 0.0f, 1.0f);
   surface.roughness = material.roughness;
@@ -62,18 +59,6 @@ lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32
 float side_of(const lanes::HitSurface& surface, glm::vec3 direction) {
   const float* normal = surface.geometric_normal;
   return glm::dot(glm::vec3(normal[0], normal[1], normal[2]), direction) > 0.0f ? -1.0f : 1.0f;
-}
-
-lanes::AffineTriangle affine_triangle(const std::array<glm::vec3, 3>& corners, glm::vec3 direction) {
-  const glm::vec3 b = corners[1] - corners[0], c = corners[2] - corners[0];
-  const glm::vec3 across = glm::cross(direction, c);
-  const float inverse = 1.0f / glm::dot(b, across);  // infinite for a ray in the plane: nothing compares true with NaN
-  lanes::AffineTriangle affine;
-  assign(affine.corner, corners[0]);
-  assign(affine.u, across * inverse);
-  assign(affine.v, glm::cross(b, direction) * inverse);
-  assign(affine.t, glm::cross(b, c) * inverse);
-  return affine;
 }
 
 const PlacedTriangle& TriangleCache::at(std::uint32_t instance, std::uint32_t triangle) {

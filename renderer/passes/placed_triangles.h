@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "renderer/lanes/patch_light.h"
+#include "renderer/lanes/affine_triangle.h"
 #include "renderer/passes/device_scene.h"
 #include "renderer/tracing/host_tracer.h"
 
@@ -19,9 +19,6 @@ struct PlacedTriangle {
 
 /// 1 if rays of the direction come from the side of the geometric normal, else -1.
 float side_of(const lanes::HitSurface& surface, glm::vec3 direction);
-
-/// The triangle as Moeller and Trumbore's test for rays of the direction needs it.
-lanes::AffineTriangle affine_triangle(const std::array<glm::vec3, 3>& corners, glm::vec3 direction);
 
 /// The triangles that a thread met last: neighbours in patches and directions meet the same ones.
 class TriangleCache {

@@ -37,7 +37,7 @@ void ScatteredHits::add(std::uint32_t pixel, const lanes::PatchDirection& direct
   lane_pixels_.t[lane] = hit.t >= 0.0f ? hit.t : std::numeric_limits<float>::infinity();
   lane_pixels_.u[lane] = hit.u;
   lane_pixels_.v[lane] = hit.v;
-  if (hit.t >= 0.0f) add_surface(lane, triangles_.at(hit.instance, hit.triangle).surface, along(direction));
+  if (hit.t >= 0.0f) add_surface(lane, triangles_.at(hit.instance, hit.triangle).surface, lanes::along(direction));
   if (count_ == lanes::kMostLanes) finish();
 }
 

@@ -10,10 +10,6 @@
 
 namespace lightwell {
 
-inline glm::vec3 along(const lanes::PatchDirection& direction) {
-  return {direction.direction_ws[0], direction.direction_ws[1], direction.direction_ws[2]};
-}
-
 class ScatteredHits {
  public:
   /// Sums go to `pixels`.
