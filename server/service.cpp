@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "server/operations/background_task.h"
 #include "server/operations/log.h"
 #include "server/service_state.h"
 #include "server/video/video_encoder.h"
@@ -38,7 +39,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
       scene_files(options.data_dir.empty() ? nullptr
                                            : std::make_unique<SceneFiles>(options.data_dir, scenes, options.limits)),
       sequences(scene_files ? std::make_unique<SequenceStore>(options, scenes, *scene_files) : nullptr),
-      session_keeper(scene_files ? std::make_unique<SessionKeeper>(options.data_dir, *scene_files) : nullptr),
+      session_keeper(scene_files ? std::make_unique<SessionKeeper>(options.data_dir, *scene_files, metrics) : nullptr),
       sessions(options.limits, session_keeper.get()),
       surroundings{{scenes, options.limits, options.settings},
                    metrics,
@@ -71,7 +72,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                                                  leaving, metrics, sequences.get(), [this] { return levels(); },
                                                  renders_waiting, *long_workers, films});
   if (sequences) scene_files->add_user([this](const std::string& digest) { return sequences->uses_scene(digest); });
-  if (sequences) sequence_workers = std::make_unique<SequenceWorkers>(*sequences, render_loop);
+  if (sequences) sequence_workers = std::make_unique<SequenceWorkers>(*sequences, render_loop, metrics);
   add_health_routes(routes, *services);
   add_scene_routes(routes, *services);
   add_session_routes(routes, *services);
@@ -123,11 +124,13 @@ void Service::State::direct(std::shared_ptr<DirectedSession> session, std::share
 }
 
 void Service::State::keep_house() {
+  BackgroundTask streams("sessions", metrics), kept("kept_sessions", metrics), jobs("sequences", metrics);
   std::unique_lock lock(mutex);
   while (!stopped.wait_for(lock, kHousekeepingInterval, [this] { return stopping; })) {
     lock.unlock();
-    sessions.keep_house(std::chrono::steady_clock::now());
-    if (sequences) sequences->keep_house();
+    streams.attempt([this] { sessions.keep_house(std::chrono::steady_clock::now()); });
+    kept.attempt([this] { sessions.end_lost(); });
+    if (sequences) jobs.attempt([this] { sequences->keep_house(); });
     lock.lock();
   }
 }
@@ -138,7 +141,11 @@ Levels Service::State::levels() {
   std::tie(levels.uploaded_scenes, levels.uploaded_bytes) = scenes.uploads();
   levels.connections = static_cast<std::uint64_t>(connections());
   levels.renders_waiting = static_cast<std::uint64_t>(renders_waiting.load());
-  levels.frames_waiting = sequences ? sequences->frames_waiting() : 0;
+  try {
+    levels.frames_waiting = sequences ? sequences->frames_waiting() : 0;
+  } catch (const DatabaseError&) {  // all other numbers are still worth telling
+    levels.frames_waiting.reset();
+  }
   levels.ready = render_loop.is_ready() && scenes_loaded && !leaving;
   return levels;
 }

@@ -3,7 +3,6 @@
 #include <sqlite3.h>
 
 #include <chrono>
-#include <stdexcept>
 #include <thread>
 
 namespace lightwell {
@@ -18,7 +17,7 @@ Database::Database(const std::filesystem::path& path) : path_(path.string()) {
   if (sqlite3_open_v2(path_.c_str(), &handle_, kFlags, nullptr) != SQLITE_OK) {
     const std::string why = handle_ ? sqlite3_errmsg(handle_) : "out of memory";
     sqlite3_close(handle_);
-    throw std::runtime_error(path_ + " cannot be opened: " + why);
+    throw DatabaseError(path_ + " cannot be opened: " + why);
   }
   sqlite3_busy_timeout(handle_, kBusyMs);
 }
@@ -28,7 +27,7 @@ Database::~Database() {
 }
 
 void Database::fail(const char* doing) const {
-  throw std::runtime_error(path_ + ": " + sqlite3_errmsg(handle_) + " (" + doing + ")");
+  throw DatabaseError(path_ + ": " + sqlite3_errmsg(handle_) + " (" + doing + ")");
 }
 
 void Database::execute(const char* sql) {

@@ -1,16 +1,23 @@
-// A thin cover over SQLite: statements with values, rows with columns. Errors are std::runtime_error that name the
-// file: the database is ours, and nothing from outside makes it fail.
+// A thin cover over SQLite: statements with values, rows with columns. Errors are DatabaseError: nothing that clients
+// say makes the database fail, but a disk, another process or who runs the server can.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 struct sqlite3;
 struct sqlite3_stmt;
 
 namespace lightwell {
+
+/// Names the file and what SQLite says of it. Another try may do.
+class DatabaseError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Not thread-safe: callers take turns. Several processes may have the same file open.
 class Database {

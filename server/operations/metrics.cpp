@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <limits>
 
 namespace lightwell {
 namespace {
@@ -103,6 +104,8 @@ struct Metrics::State {
       histograms("lightwell_request_seconds", "Time from a request's being read to its answer");
   Counter& received = counters("lightwell_received_bytes_total", "Bytes of request bodies").Add({});
   Counter& rebuilds = counters("lightwell_device_rebuilds_total", "Times the lost device was set up again").Add({});
+  Family<Counter>& task_failures =
+      counters("lightwell_background_failures_total", "Times that work which nobody waits for has failed, by task");
   Counter& taken_up = counters("lightwell_sessions_taken_up_total", "Sessions of other servers taken up").Add({});
   Gauge& sessions = gauges("lightwell_sessions", "Sessions").Add({});
   Gauge& viewers = gauges("lightwell_viewers", "Streams that are open").Add({});
@@ -174,20 +177,23 @@ void Metrics::device_rebuilt() {
   state_->rebuilds.Increment();
 }
 
+void Metrics::background_task_failed(std::string_view task) {
+  state_->task_failures.Add({{"task", std::string(task)}}).Increment();
+}
+
 void Metrics::session_taken_up() {
   state_->taken_up.Increment();
 }
 
 std::string Metrics::exposition(const Levels& levels) const {
-  const std::pair<Gauge&, std::uint64_t> values[] = {{state_->sessions, levels.sessions},
-                                                     {state_->viewers, levels.viewers},
-                                                     {state_->connections, levels.connections},
-                                                     {state_->renders_waiting, levels.renders_waiting},
-                                                     {state_->frames_waiting, levels.frames_waiting},
-                                                     {state_->scenes, levels.uploaded_scenes},
-                                                     {state_->scene_bytes, levels.uploaded_bytes},
-                                                     {state_->ready, levels.ready ? 1u : 0u}};
+  const std::pair<Gauge&, std::uint64_t> values[] = {
+      {state_->sessions, levels.sessions},       {state_->viewers, levels.viewers},
+      {state_->connections, levels.connections}, {state_->renders_waiting, levels.renders_waiting},
+      {state_->scenes, levels.uploaded_scenes},  {state_->scene_bytes, levels.uploaded_bytes},
+      {state_->ready, levels.ready ? 1u : 0u}};
   for (const auto& [gauge, value] : values) gauge.Set(static_cast<double>(value));
+  state_->frames_waiting.Set(levels.frames_waiting ? static_cast<double>(*levels.frames_waiting)
+                                                   : std::numeric_limits<double>::quiet_NaN());
   state_->resident.Set(resident_bytes());
   return prometheus::TextSerializer().Serialize(state_->registry.Collect());
 }

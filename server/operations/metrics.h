@@ -19,7 +19,8 @@ enum class Purpose { kStream, kRequest };
 struct Levels {
   std::uint64_t sessions = 0, viewers = 0, connections = 0;
   std::uint64_t renders_waiting = 0;  // requests for pictures that are not answered yet
-  std::uint64_t frames_waiting = 0;   // of sequences, not rendered yet
+  // Of sequences, not rendered yet; none: their table cannot be read.
+  std::optional<std::uint64_t> frames_waiting = 0;
   std::uint64_t uploaded_scenes = 0, uploaded_bytes = 0;
   bool ready = false;
 };
@@ -52,6 +53,8 @@ class Metrics {
   void bytes_received(std::uint64_t bytes);
   void device_memory(const DeviceMemory& memory);
   void device_rebuilt();
+  /// Work that is done again and again has failed this time.
+  void background_task_failed(std::string_view task);
   /// A session of another server goes on at this one.
   void session_taken_up();
 

@@ -40,8 +40,8 @@ std::span<const std::byte> bytes_of(const std::string& text) {
 
 }  // namespace
 
-SequenceWorkers::SequenceWorkers(SequenceStore& store, RenderLoop& render_loop)
-    : store_(store), render_loop_(render_loop) {
+SequenceWorkers::SequenceWorkers(SequenceStore& store, RenderLoop& render_loop, Metrics& metrics)
+    : store_(store), render_loop_(render_loop), task_("sequence_frames", metrics) {
   for (int i = 0; i < kThreads; ++i) threads_.emplace_back([this] { run(); });
 }
 
@@ -53,17 +53,26 @@ SequenceWorkers::~SequenceWorkers() {
 
 void SequenceWorkers::run() {
   while (!stopping_ && !render_loop_.is_ready()) std::this_thread::sleep_for(kReadyPoll);
-  while (!stopping_) {
-    std::optional<ClaimedFrame> frame;
-    try {
-      frame = store_.claim(kWait);
-      if (frame) render(*frame);
-    } catch (const std::exception& error) {  // the disk is full, say
-      log_event(LogLevel::kError, "sequence_worker_failed", {{"reason", std::string(error.what())}});
-      if (frame) store_.fail(*frame, protocol::make_problem(500, "the frame could not be kept"));
-      std::this_thread::sleep_for(kWait);
-    }
+  std::optional<ClaimedFrame> frame;
+  while (!stopping_)
+    if (!task_.attempt([&] { work(frame); })) std::this_thread::sleep_for(kWait);
+}
+
+void SequenceWorkers::work(std::optional<ClaimedFrame>& frame) {
+  if (frame) store_.release(*frame);  // the table failed while it was made: it is made again
+  frame.reset();
+  frame = store_.claim(kWait);
+  if (!frame) return;
+  try {
+    render(*frame);
+  } catch (const DatabaseError&) {
+    throw;
+  } catch (const std::exception&) {  // no memory, say: it would fail again
+    store_.fail(*frame, protocol::make_problem(500, "the frame could not be kept"));
+    frame.reset();
+    throw;
   }
+  frame.reset();
 }
 
 void SequenceWorkers::render(const ClaimedFrame& frame) {

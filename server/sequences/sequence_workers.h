@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/operations/background_task.h"
 #include "server/render/render_loop.h"
 #include "server/sequences/sequence_store.h"
 
@@ -12,13 +13,15 @@ namespace lightwell {
 
 class SequenceWorkers {
  public:
-  /// Begin once the render loop is ready. Both outlive the workers.
-  SequenceWorkers(SequenceStore& store, RenderLoop& render_loop);
+  /// Begin once the render loop is ready. All outlive the workers.
+  SequenceWorkers(SequenceStore& store, RenderLoop& render_loop, Metrics& metrics);
   /// Stops the store, lets frames being rendered end, and waits. The render loop may have stopped before.
   ~SequenceWorkers();
 
  private:
   void run();
+  /// Renders a frame if there is one to render. `frame` is what was claimed, until it is finished or another's again.
+  void work(std::optional<ClaimedFrame>& frame);
   void render(const ClaimedFrame& frame);
   /// False if the frame was given up.
   protocol::Decoded<std::vector<FrameFile>> make_files(const ClaimedFrame& frame, const SequencePlan& plan,
@@ -26,6 +29,7 @@ class SequenceWorkers {
 
   SequenceStore& store_;
   RenderLoop& render_loop_;
+  BackgroundTask task_;
   std::atomic<bool> stopping_ = false;
   std::vector<std::thread> threads_;
 };

@@ -14,14 +14,10 @@ std::int64_t unix_milliseconds() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
 }
 
-void log_not_kept(const std::string& id, const std::string& reason) {
-  log_event(LogLevel::kWarning, "session_not_kept", {{"session", id}, {"reason", reason}});
-}
-
 }  // namespace
 
-SessionKeeper::SessionKeeper(const std::string& data_dir, SceneFiles& scenes)
-    : scenes_(scenes), archive_(std::filesystem::path(data_dir) / "sessions.sqlite") {
+SessionKeeper::SessionKeeper(const std::string& data_dir, SceneFiles& scenes, Metrics& metrics)
+    : scenes_(scenes), metrics_(metrics), archive_(std::filesystem::path(data_dir) / "sessions.sqlite") {
   scenes_.add_user([this](const std::string& digest) { return archive_.uses_scene(digest); });
   writer_ = std::thread([this] { run(); });
 }
@@ -56,10 +52,10 @@ void SessionKeeper::write(const Session& session, bool and_release) {
   if (session.ended()) return;  // and is forgotten, or will be
   try {
     if (!state->edits) {
-      if (written_.contains(id)) log_not_kept(id, "it has more edits than are kept");
+      if (written_.contains(id)) say_not_kept(id, "it has more edits than are kept");
       return drop(id);
     }
-    if (const Status kept = scenes_.keep(state->source); !kept) log_not_kept(id, kept.error().message());
+    const Status scene_kept = scenes_.keep(state->source);
     KeptSession form = session.kept_form();
     form.unix_ms = unix_milliseconds();
     if (and_release) {
@@ -69,9 +65,21 @@ void SessionKeeper::write(const Session& session, bool and_release) {
       archive_.write(id, form);
       written_.insert(id);
     }
+    if (!scene_kept) return failed(id, scene_kept.error().message());
+    failing_.erase(id);
   } catch (const std::exception& error) {
-    log_not_kept(id, error.what());
+    failed(id, error.what());
   }
+}
+
+/// With the lock on writing held. Said once: a session changes up to ten times a second.
+void SessionKeeper::failed(const std::string& id, const std::string& reason) {
+  metrics_.background_task_failed("session_writing");
+  if (failing_.insert(id).second) say_not_kept(id, reason);
+}
+
+void SessionKeeper::say_not_kept(const std::string& id, const std::string& reason) {
+  log_event(LogLevel::kWarning, "session_not_kept", {{"session", id}, {"reason", reason}});
 }
 
 void SessionKeeper::keep(const Session& session) {
@@ -85,6 +93,7 @@ void SessionKeeper::release(const Session& session) {
 /// With the lock on writing held.
 void SessionKeeper::drop(const std::string& id) {
   written_.erase(id);
+  failing_.erase(id);
   archive_.remove(id);
 }
 
@@ -136,13 +145,7 @@ std::set<std::string> SessionKeeper::keep_house() {
     std::lock_guard lock(writing_mutex_);
     lost = written_;
   }
-  SessionArchive::Beat beat;
-  try {
-    beat = archive_.beat();
-  } catch (const std::exception& error) {
-    log_event(LogLevel::kWarning, "sessions_not_kept", {{"reason", std::string(error.what())}});
-    return {};
-  }
+  const SessionArchive::Beat beat = archive_.beat();
   for (const std::string& digest : beat.scenes_let_go) scenes_.remove_if_unused(digest);
   std::erase_if(lost, [&](const std::string& id) { return beat.own.contains(id); });
   return lost;

@@ -8,16 +8,17 @@
 #include <thread>
 
 #include "server/data/scene_files.h"
+#include "server/operations/metrics.h"
 #include "server/session/session.h"
 #include "server/session/session_archive.h"
 
 namespace lightwell {
 
-/// Thread-safe. A session that cannot be kept goes on all the same, and the log says so.
+/// Thread-safe. A session that cannot be kept goes on all the same; the log says so, and it is counted.
 class SessionKeeper {
  public:
   /// data_dir/sessions.sqlite. Throws std::runtime_error that names what cannot be made.
-  SessionKeeper(const std::string& data_dir, SceneFiles& scenes);
+  SessionKeeper(const std::string& data_dir, SceneFiles& scenes, Metrics& metrics);
   ~SessionKeeper();  // writes what has changed
   SessionKeeper(const SessionKeeper&) = delete;
   SessionKeeper& operator=(const SessionKeeper&) = delete;
@@ -41,18 +42,23 @@ class SessionKeeper {
   protocol::Decoded<TakenUp> take_up(const std::string& id, const SessionRules& rules);
 
   /// Called every second. Gives the sessions that were this server's and are another's now: it took this one for dead.
+  /// Throws DatabaseError.
   std::set<std::string> keep_house();
 
  private:
   void run();
   void write(const Session& session, bool and_release);
   void drop(const std::string& id);
+  void failed(const std::string& id, const std::string& reason);
+  static void say_not_kept(const std::string& id, const std::string& reason);
 
   SceneFiles& scenes_;
+  Metrics& metrics_;
   SessionArchive archive_;
 
   std::mutex writing_mutex_;  // taken before mutex_
   std::set<std::string> written_;
+  std::set<std::string> failing_;  // to be written, the last time that it was tried
 
   std::mutex mutex_;
   std::condition_variable woken_;

@@ -83,6 +83,7 @@ bool SessionStore::end(const std::string& id) {
 
 /// Another server has them, which took this one for dead: their viewers find them there.
 void SessionStore::end_lost() {
+  if (!keeper_) return;
   for (const std::string& id : keeper_->keep_house()) {
     const std::shared_ptr<Session> lost = take_out(id);
     if (!lost) continue;
@@ -108,7 +109,6 @@ void SessionStore::keep_house(SteadyTime now) {
     session->end(protocol::CloseCode::kSessionEnded, "nobody watched for long", true);
     if (keeper_) keeper_->forget(session->id());
   }
-  if (keeper_) end_lost();
   for (const auto& session : alive) session->audience().check_patience(now);
 }
 

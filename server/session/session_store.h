@@ -38,6 +38,9 @@ class SessionStore {
 
   /// Ends sessions that nobody has wanted for long, and streams whose clients do not keep up. Called every second.
   void keep_house(SteadyTime now);
+  /// Ends those that another server has taken up, and says that this one lives. Called every second. Throws
+  /// DatabaseError.
+  void end_lost();
   /// How many there are, and viewers of them.
   std::pair<std::size_t, std::size_t> size() const;
   /// The server stops: another one may take the sessions up.
@@ -47,7 +50,6 @@ class SessionStore {
   std::shared_ptr<Session> take_out(const std::string& id);
   bool insert(std::shared_ptr<Session> session);
   protocol::Problem too_many() const;
-  void end_lost();
 
   const ServeLimits limits_;
   SessionKeeper* const keeper_;
