@@ -7,8 +7,8 @@ import { fileURLToPath } from "node:url";
 import { Line, start_server } from "./server_process.mjs";
 import { open_browser, ViewerPage } from "./viewer_page.mjs";
 
-const root = fileURLToPath(new URL("../..", import.meta.url));
-const program = process.env.LIGHTWELL ?? path.join(root, "build/release/lightwell");
+export const root = fileURLToPath(new URL("../..", import.meta.url));
+export const program = process.env.LIGHTWELL ?? path.join(root, "build/release/lightwell");
 const screenshots = process.env.LIGHTWELL_SCREENSHOTS ?? path.join(root, "build/release/browser");
 const running_at = Number(process.env.LIGHTWELL_PORT ?? 0);  // a server to use that runs already
 

@@ -16,8 +16,13 @@ export async function free_port() {
 }
 
 /**
+ * A server under way. `kill` ends it without a word to anybody.
+ * @typedef {{port: number, log: () => string, stop: () => Promise<void>, kill: () => Promise<void>}} ServerProcess
+ */
+
+/**
  * Starts `lightwell serve` and waits until it is ready to render.
- * @param {string} program @param {string[]} options @returns {Promise<{port: number, log: () => string, stop: () => Promise<void>}>}
+ * @param {string} program @param {string[]} options @returns {Promise<ServerProcess>}
  */
 export async function start_server(program, options = []) {
   const port = await free_port();
@@ -43,6 +48,10 @@ export async function start_server(program, options = []) {
       const timer = setTimeout(() => child.kill("SIGKILL"), 10000);
       await stopped;
       clearTimeout(timer);
+    },
+    async kill() {
+      child.kill("SIGKILL");
+      await stopped;
     },
   };
 }
