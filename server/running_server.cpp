@@ -2,11 +2,11 @@
 
 namespace lightwell {
 
-RunningServer::RunningServer(const ServeOptions& options, MakePictureSource make_source)
+RunningServer::RunningServer(const ServeOptions& options, MakePictureSource make_source, FrameEncoders encode)
     : base_path_(options.base_path),
       tls_(!options.tls_certificate.empty()),
       net_(net_options(options)),
-      service_(options, std::move(make_source), [this] { return net_.connections(); }) {
+      service_(options, std::move(make_source), std::move(encode), [this] { return net_.connections(); }) {
   net_.start(service_);
 }
 

@@ -11,7 +11,7 @@ namespace lightwell {
 class RunningServer {
  public:
   /// Listens and answers from here on; pictures come once `ready`. Throws std::runtime_error if the port is taken.
-  RunningServer(const ServeOptions& options, MakePictureSource make_source);
+  RunningServer(const ServeOptions& options, MakePictureSource make_source, FrameEncoders encode = {});
   ~RunningServer();  // stops at once, without draining
 
   int port() const { return net_.port(); }

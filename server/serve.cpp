@@ -65,8 +65,9 @@ void run(const ServeOptions& options, const StopSignals& signals) {
   const auto start = std::chrono::steady_clock::now();
   set_up_log(options.log_format, options.log_level);
   log_event(LogLevel::kInfo, "starting", {{"scene", options.scene}});
-  RunningServer server(options,
-                       with_fault(renderer_source(options.device, options.tracer), std::getenv("LIGHTWELL_FAULT")));
+  const char* const fault = std::getenv("LIGHTWELL_FAULT");
+  RunningServer server(options, with_fault(renderer_source(options.device, options.tracer), fault),
+                       encoders_with_fault(fault));
   const bool signalled = was_signalled_before(server.ready(), signals);
   if (!is_set(server.ready())) return;  // nobody has been served yet
   const SourceFacts facts = server.ready().get();

@@ -30,10 +30,11 @@ ServeOptions with_settings_within_limits(ServeOptions options) {
 
 }  // namespace
 
-Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source,
+Service::State::State(const ServeOptions& serve_options, MakePictureSource make_source, FrameEncoders encode_frames,
                       std::function<int()> open_connections)
     : options(with_settings_within_limits(serve_options)),
       access(options.access),
+      encode(std::move(encode_frames)),
       connections(std::move(open_connections)),
       scenes(options.limits),
       scene_files(options.data_dir.empty() ? nullptr
@@ -119,6 +120,7 @@ Shot Service::State::warm_up_shot() {
 void Service::State::direct(std::shared_ptr<DirectedSession> session, std::shared_ptr<RenderAccount> account) {
   DirectorOptions director;
   director.quality = options.quality;
+  director.encode = encode;
   director.still_before_reference = std::chrono::milliseconds(std::llround(options.reference_after_s * 1000.0));
   render_loop.add(std::make_shared<Director>(std::move(session), *encoders, director), Share::kOwn, std::move(account));
 }
@@ -167,8 +169,9 @@ void Service::State::count(const net::RequestHead* head, int status, double seco
              {"ms", seconds * 1e3}});
 }
 
-Service::Service(const ServeOptions& options, MakePictureSource make_source, std::function<int()> connections)
-    : state_(std::make_unique<State>(options, std::move(make_source), std::move(connections))) {}
+Service::Service(const ServeOptions& options, MakePictureSource make_source, FrameEncoders encode,
+                 std::function<int()> connections)
+    : state_(std::make_unique<State>(options, std::move(make_source), std::move(encode), std::move(connections))) {}
 
 Service::~Service() {
   stop();

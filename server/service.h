@@ -8,6 +8,7 @@
 #include "server/net/application.h"
 #include "server/render/picture_source.h"
 #include "server/serve.h"
+#include "server/stream/frame_encoders.h"
 
 namespace lightwell {
 
@@ -21,7 +22,8 @@ class Service : public net::Application {
  public:
   /// Begins to load the scenes and to warm the renderer up, both in threads of their own.
   /// `connections`: how many are open, for the metrics. Throws std::runtime_error if the data folder cannot be used.
-  Service(const ServeOptions& options, MakePictureSource make_source, std::function<int()> connections);
+  Service(const ServeOptions& options, MakePictureSource make_source, FrameEncoders encode,
+          std::function<int()> connections);
   ~Service() override;
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

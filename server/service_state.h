@@ -13,7 +13,8 @@
 namespace lightwell {
 
 struct Service::State {
-  State(const ServeOptions& serve_options, MakePictureSource make_source, std::function<int()> open_connections);
+  State(const ServeOptions& serve_options, MakePictureSource make_source, FrameEncoders encode_frames,
+        std::function<int()> open_connections);
 
   void load_scenes();
   /// What pictures can be sent as, the one that every client takes first.
@@ -32,6 +33,7 @@ struct Service::State {
 
   const ServeOptions options;
   AccessControl access;
+  const FrameEncoders encode;
   const std::function<int()> connections;
   Metrics metrics;
   SceneStore scenes;

@@ -93,6 +93,7 @@ struct Metrics::State {
   Histogram& encode_time =
       histograms("lightwell_encode_seconds", "Time to encode a stream's picture").Add({}, kStageSeconds);
   ByCodec encoded{counters("lightwell_pictures_encoded_total", "Pictures encoded for streams")};
+  ByCodec not_encoded{counters("lightwell_encode_failures_total", "Pictures of streams that could not be encoded")};
   ByCodec encoded_bytes{counters("lightwell_encoded_bytes_total", "Bytes of pictures encoded for streams")};
   ByCodec sent{counters("lightwell_pictures_sent_total", "Pictures sent to viewers")};
   ByCodec sent_bytes{counters("lightwell_sent_bytes_total", "Bytes of pictures sent to viewers")};
@@ -121,7 +122,10 @@ struct Metrics::State {
   Gauge& device_used = gauges("lightwell_device_memory_used_bytes", "Of it, what is in use, by everyone").Add({});
 };
 
-Metrics::Metrics() : state_(std::make_unique<State>()) {}
+Metrics::Metrics() : state_(std::make_unique<State>()) {
+  for (const char* task : {"sessions", "kept_sessions", "session_writing", "sequences", "sequence_frames"})
+    state_->task_failures.Add({{"task", task}});  // 0 from the start: the first failure is a rise that alerts see
+}
 
 Metrics::~Metrics() = default;
 
@@ -145,6 +149,10 @@ void Metrics::picture_encoded(double seconds, const EncodedBytes& bytes) {
     state_->encoded.of(codec).Increment();
     state_->encoded_bytes.of(codec).Increment(static_cast<double>(size));
   }
+}
+
+void Metrics::encoding_failed(PictureCodec codec) {
+  state_->not_encoded.of(codec).Increment();
 }
 
 void Metrics::picture_sent(PictureCodec codec, std::uint64_t bytes) {

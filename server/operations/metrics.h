@@ -45,6 +45,7 @@ class Metrics {
   void frame_rendered(const Frame& frame, Purpose purpose, double seconds);
   void frame_failed(ErrorKind kind);
   void picture_encoded(double seconds, const EncodedBytes& bytes);
+  void encoding_failed(PictureCodec codec);
   void picture_sent(PictureCodec codec, std::uint64_t bytes);
   /// From a frame's being sent to its being acknowledged.
   void picture_acknowledged(double seconds);

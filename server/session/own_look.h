@@ -25,6 +25,7 @@ class OwnLook : public DirectedSession {
   std::shared_ptr<const SessionState> state() const override;
   Audience& audience() override { return audience_; }
   bool ended() const override { return ended_ || session_->ended(); }
+  void encoding_failed(PictureCodec codec) override { session_->encoding_failed(codec); }
   void picture_encoded(double seconds, const EncodedBytes& bytes) override {
     session_->picture_encoded(seconds, bytes);
   }

@@ -81,7 +81,7 @@ std::optional<Problem> Session::apply_input(const protocol::Input& input, Viewer
 
 std::optional<Problem> Session::change(const protocol::SessionPatch& patch, Viewer* by, std::uint32_t seq) {
   std::lock_guard one_at_a_time(change_mutex_);
-  if (ended_) return make_problem(404, "the session has ended");
+  if (ended_) return no_such_session();
   protocol::Decoded<SessionState> next = changed(*state(), patch, surroundings_.rules, steady_clock::now());
   if (!next) return next.problem();
   if (by) by->input_applied(next->revision, seq);

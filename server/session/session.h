@@ -86,6 +86,7 @@ class Session : public ViewerHost, public DirectedSession, public std::enable_sh
   std::shared_ptr<const SessionState> state() const override;
   Audience& audience() override { return audience_; }
   bool ended() const override { return ended_; }
+  void encoding_failed(PictureCodec codec) override { surroundings_.metrics.encoding_failed(codec); }
   void picture_encoded(double seconds, const EncodedBytes& bytes) override {
     surroundings_.metrics.picture_encoded(seconds, bytes);
   }

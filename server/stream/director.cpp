@@ -6,7 +6,6 @@
 
 #include "server/convert.h"
 #include "server/operations/log.h"
-#include "server/render/jpeg.h"
 
 namespace lightwell {
 namespace {
@@ -171,23 +170,30 @@ PictureNeed Director::need_of(const Take& take, const Frame& frame, SteadyTime n
 
 /// None where the encoder fails: those who watch have JPEG from here on.
 std::optional<VideoPacket> Director::encode_video(const Take& take, const Frame& frame, bool want_key) {
-  Result<VideoPacket> packet = video_.encode(frame.display_rgbx, frame.size_px, take.grade.quality, want_key);
+  Result<VideoPacket> packet =
+      options_.encode.video(video_, frame.display_rgbx, frame.size_px, take.grade.quality, want_key);
   if (packet) {
     if (packet->is_key) last_key_at_ = steady_clock::now();
     return std::move(packet).value();
   }
   log_event(LogLevel::kError, "video_failed", {{"reason", packet.error().message()}});
+  session_->encoding_failed(PictureCodec::kH264);
   session_->audience().demote(
       protocol::make_problem(500, "video cannot be encoded any more: pictures are JPEG from here on"));
   return {};
 }
 
-bool Director::encode_file(const Take& take, const Frame& frame, Picture& picture) const {
+/// False where the encoder fails: the same would fail again, so that nothing is made until something changes.
+bool Director::encode_file(const Take& take, const Frame& frame, Picture& picture) {
   const bool moving = take.kind == Kind::kFresh && frame.size_px.x * frame.size_px.y > kSmallPicture;
-  auto file =
-      encode_jpeg(frame.display_rgbx, frame.size_px, take.is_final ? options_.final_quality : take.grade.quality,
-                  moving ? Chroma::kHalved : Chroma::kFull);
+  auto file = options_.encode.jpeg(frame.display_rgbx, frame.size_px,
+                                   take.is_final ? options_.final_quality : take.grade.quality,
+                                   moving ? Chroma::kHalved : Chroma::kFull);
   if (!file) {
+    log_event(LogLevel::kError, "picture_not_encoded", {{"reason", file.error().message()}});
+    session_->encoding_failed(PictureCodec::kJpeg);
+    if (session_->state()->revision != take.state->revision) return false;  // what failed is out of date
+    failed_revision_ = take.state->revision;
     session_->audience().report(problem_of(file.error()));
     return false;
   }

@@ -9,6 +9,7 @@
 #include "server/render/subject.h"
 #include "server/session/session_state.h"
 #include "server/stream/audience.h"
+#include "server/stream/frame_encoders.h"
 #include "server/stream/picture_grade.h"
 #include "server/worker_pool.h"
 
@@ -22,6 +23,7 @@ struct DirectorOptions {
   std::uint32_t reference_frames = 1024;                // in its final picture
   int quality = 80;                                     // JPEG, while the picture changes
   int final_quality = 95;
+  FrameEncoders encode;
 };
 
 /// A session, or a viewer's own look at one, as the director sees it.
@@ -33,6 +35,8 @@ class DirectedSession {
   virtual bool ended() const = 0;
   /// A picture was encoded, on whatever thread.
   virtual void picture_encoded(double seconds, const EncodedBytes& bytes) = 0;
+  /// A picture could not be, on whatever thread.
+  virtual void encoding_failed(PictureCodec codec) = 0;
   /// The render loop should ask again.
   virtual void wake_render_loop() = 0;
 };
@@ -70,7 +74,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   void encode(Frame frame);
   PictureNeed need_of(const Take& take, const Frame& frame, SteadyTime now) const;
   std::optional<VideoPacket> encode_video(const Take& take, const Frame& frame, bool want_key);
-  bool encode_file(const Take& take, const Frame& frame, Picture& picture) const;
+  bool encode_file(const Take& take, const Frame& frame, Picture& picture);
   void show(const Take& take, const Frame& frame, std::uint64_t number);
   void describe(const Take& take, const Frame& frame, Picture& picture) const;
 
@@ -91,7 +95,7 @@ class Director : public Subject, public std::enable_shared_from_this<Director> {
   SteadyTime still_since_{};       // the last picture that showed a change
   std::uint32_t accumulated_ = 0;  // frames in the picture
   bool in_reference_ = false;      // the picture is made by the method reference, whatever the session's is
-  std::uint64_t failed_revision_ = 0;
+  std::atomic<std::uint64_t> failed_revision_ = 0;
   SteadyTime retry_at_{};
   std::uint64_t next_number_ = 1;
   std::atomic<int> in_the_making_ = 0;  // pictures rendered or to be, that viewers have not got yet

@@ -12,8 +12,9 @@ namespace lightwell::test {
 /// A server of its own for a few questions.
 class Asked {
  public:
-  explicit Asked(ServeOptions options = test_options(), MakePictureSource source = nullptr)
-      : studio(std::make_shared<FakeStudio>()), server(options, source ? std::move(source) : fake_source(studio)) {}
+  explicit Asked(ServeOptions options = test_options(), MakePictureSource source = nullptr, FrameEncoders encode = {})
+      : studio(std::make_shared<FakeStudio>()),
+        server(options, source ? std::move(source) : fake_source(studio), std::move(encode)) {}
 
   Asked& until_ready() {
     server.ready().wait();
@@ -34,8 +35,9 @@ class Asked {
     line.send(text);
     return read_answer(line);
   }
-  std::string session() const {
-    return json::parse(ask("POST", "/v1/sessions", R"({"scene":"cornell","width":8,"height":8})").body)["id"];
+  std::string session(const std::string& scene = "cornell") const {
+    const json request{{"scene", scene}, {"width", 8}, {"height", 8}};
+    return json::parse(ask("POST", "/v1/sessions", request.dump()).body)["id"];
   }
   static std::string handshake(const std::string& session) {
     return "GET /v1/sessions/" + session +

@@ -1,5 +1,7 @@
 // Every refusal within a stream that the OpenAPI document shows is one that the server gives, in those words.
 #include "server/data/database.h"
+#include "server/session/session.h"
+#include "server/video/video_encoder.h"
 #include "tests/integration/data_folder.h"
 #include "tests/integration/refusals_fixture.h"
 
@@ -25,6 +27,14 @@ class Stream {
   StreamClient& client() { return client_; }
 
   Refused error() { return {client_.next_text("error"), nullptr, 0}; }
+  /// The same, of one who takes every picture on the way.
+  Refused error_of_watcher() {
+    while (const auto heard = client_.next()) {
+      if (heard->frame) client_.ack(heard->frame->frame);
+      if (heard->text.is_object() && heard->text["type"] == "error") return {heard->text, nullptr, 0};
+    }
+    return {};
+  }
   Refused end() {
     Refused refused;
     while (const auto heard = client_.next()) {
@@ -135,12 +145,58 @@ void lose_the_session(Refusals& refused) {
   drainer.join();
 }
 
+/// Encoders that fail after some pictures: of JPEG until something changes, of video for the whole stream.
+void lose_the_encoders(Refusals& refused) {
+  Asked without_jpeg(test_options(), nullptr, encoders_with_fault("jpeg@3"));
+  const std::string still = without_jpeg.until_ready().session();
+  Stream stream(without_jpeg, still);
+  refused["not_encoded"] = stream.hello().error_of_watcher();
+  stream.client().input(1, {{"time_s", 1}});
+  EXPECT_TRUE(stream.client().next_frame());  // the session goes on
+  if (!can_encode_video()) return;
+  Asked without_video(test_options(), nullptr, encoders_with_fault("video@3"));
+  const std::string playing = without_video.until_ready().session("helicopters");
+  Stream moving(without_video, playing);
+  EXPECT_EQ(moving.hello({{"codecs", {"h264", "jpeg"}}}).welcome["codec"], "h264");
+  refused["video_lost"] = moving.error_of_watcher();
+  const auto is_jpeg = [](const auto& frame) { return frame.codec == protocol::FrameCodec::kJpeg; };
+  EXPECT_TRUE(moving.client().frame_where(is_jpeg));
+}
+
+/// An input that comes between the session's end and its streams' is seldom seen over a line: here it is made.
+void input_as_the_session_ends(Refusals& refused) {
+  const ServeLimits limits;
+  SceneStore scenes(limits);
+  scenes.add_builtin_scenes();
+  Metrics metrics;
+  const auto none = [] { return std::vector<std::string>(); };
+  const SessionSurroundings surroundings{
+      {scenes, limits, Settings()},    metrics,           [] {}, [] { return std::string(); }, none, none,
+      [](const auto&, const auto&) {}, [](const auto&) {}};
+  protocol::SessionRequest request;
+  request.scene = "cornell";
+  auto state = make_session_state(request, surroundings.rules, std::chrono::steady_clock::now());
+  ASSERT_TRUE(state.ok());
+  const auto session = std::make_shared<Session>("a", std::move(state).value(), surroundings, 60.0);
+  const auto viewer = std::make_shared<Viewer>(session, true);  // not one of those that the session tells of its end
+  viewer->received_text(
+      R"({"type":"hello","codecs":["jpeg"],"width":64,"height":64,"device_pixel_ratio":1,"role":"driver","resume":null})");
+  ASSERT_TRUE(std::holds_alternative<net::TextMessage>(viewer->next()));
+  session->end(protocol::CloseCode::kSessionEnded, "the session was ended", true);
+  viewer->received_text(R"({"type":"input","seq":1,"playing":false})");
+  const net::Outgoing answer = viewer->next();
+  ASSERT_TRUE(std::holds_alternative<net::TextMessage>(answer));
+  refused["session_ending"].error = json::parse(std::get<net::TextMessage>(answer).text);
+}
+
 TEST(Refusals, InAStreamAreThoseOfTheDocument) {
   Refusals all;
-  for (const auto& provoke : {break_the_rules_of_inputs, say_what_nobody_may, do_not_listen, lose_the_session})
+  for (const auto& provoke : {break_the_rules_of_inputs, say_what_nobody_may, do_not_listen, lose_the_session,
+                              lose_the_encoders, input_as_the_session_ends})
     provoke(all);
   const json document = json::parse(protocol::openapi_document());
-  const json& shown = document["paths"]["/v1/sessions/{id}/stream"]["get"]["x-refusals-in-the-stream"];
+  json shown = document["paths"]["/v1/sessions/{id}/stream"]["get"]["x-refusals-in-the-stream"];
+  if (!can_encode_video()) shown.erase("video_lost");
   for (const auto& [name, example] : shown.items()) {
     ASSERT_TRUE(all.contains(name)) << name << " is shown, and not provoked";
     const Refused& given = all[name];
