@@ -118,4 +118,57 @@ void ask_for_films(Answers& answers) {
   answers["no_encoder"] = Asked(options).until_ready().ask("GET", film);
 }
 
+namespace {
+
+TEST(Refusals, ASequenceWhoseSceneIsGoneFailsAsTheDocumentSays) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  auto first = std::make_unique<Asked>(options);
+  first->until_ready();
+  const std::string body = R"({"scene":"cornell","width":8,"height":8,"last_frame":0})";
+  const std::string path =
+      "/v1/sequences/" + json::parse(first->ask("POST", "/v1/sequences", body).body)["id"].get<std::string>();
+  EXPECT_TRUE(comes_true([&] { return first->ask("GET", path + "/archive").status == 200; }));
+  first.reset();
+  // As if its frame were still to be rendered, and of a scene that was uploaded.
+  Database(folder.path() / "sequences.sqlite")
+      .execute("UPDATE sequences SET state = 0, scene_digest = 'of another scene'; UPDATE frames SET state = 0");
+  Asked second(options);
+  second.until_ready();
+  json sequence;
+  EXPECT_TRUE(comes_true([&] {
+    sequence = json::parse(second.ask("GET", path).body);
+    return sequence["state"] == "failed";
+  }));
+  const json document = json::parse(protocol::openapi_document());
+  const json& content = document["paths"]["/v1/sequences/{id}"]["get"]["responses"]["200"]["content"];
+  const json& shown = content["application/json"]["examples"]["failed"]["value"];
+  EXPECT_EQ(sequence["state"], shown["state"]);
+  expect_problem("failed", sequence["problem"], shown["problem"]);
+}
+
+TEST(Refusals, ASequenceWhoseFrameCannotBeWrittenFailsAsTheDocumentSays) {
+  const DataFolder folder;
+  ServeOptions options = test_options();
+  options.data_dir = folder.path().string();
+  Asked asked(options);
+  asked.until_ready();
+  std::filesystem::remove_all(folder.path() / "sequences");
+  std::ofstream(folder.path() / "sequences") << "where a folder should be";
+  const std::string body = R"({"scene":"cornell","width":8,"height":8,"last_frame":0})";
+  const std::string path =
+      "/v1/sequences/" + json::parse(asked.ask("POST", "/v1/sequences", body).body)["id"].get<std::string>();
+  json sequence;
+  EXPECT_TRUE(comes_true([&] {
+    sequence = json::parse(asked.ask("GET", path).body);
+    return sequence["state"] == "failed";
+  }));
+  const json document = json::parse(protocol::openapi_document());
+  const json& content = document["paths"]["/v1/sequences/{id}"]["get"]["responses"]["200"]["content"];
+  expect_problem("not_kept", sequence["problem"],
+                 content["application/json"]["examples"]["not_kept"]["value"]["problem"]);
+}
+
+}  // namespace
 }  // namespace lightwell::test

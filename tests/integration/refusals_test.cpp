@@ -114,6 +114,8 @@ void ask_what_means_nothing(Answers& answers) {
   answers["scene"] = asked.ask("GET", "/v1/scenes/atrum");
   answers["session"] = asked.ask("GET", "/v1/sessions/3f9a0c51d2e84b76");
   answers["path"] = asked.ask("GET", "/v2/render");
+  answers["page"] = asked.ask("POST", "/", "{}");
+  answers["type_of_file"] = asked.ask("PUT", "/v1/scenes/mine", triangle_glb(), "text/plain");
   answers["builtin"] = asked.ask("PUT", "/v1/scenes/cornell", triangle_glb(), kGlb);
   for (const char* name : {"a", "b", "c"}) asked.ask("PUT", std::string("/v1/scenes/") + name, triangle_glb(), kGlb);
   answers["too_many"] = asked.ask("PUT", "/v1/scenes/d", triangle_glb(), kGlb);
@@ -138,9 +140,11 @@ void ask_for_too_much(Answers& answers) {
   ServeOptions options = test_options();
   options.limits.max_triangles = 1;
   options.limits.max_scene_bytes = 700;
+  options.limits.max_spp_frames = 16;
   options.limits.max_viewers_per_session = 1;
   Asked asked(options);
   asked.until_ready();
+  answers["spp_frames"] = asked.render({{"spp_frames", 17}});
   answers["triangles"] = asked.ask("PUT", "/v1/scenes/two", triangle_glb(2), kGlb);
   asked.ask("PUT", "/v1/scenes/one", triangle_glb(), kGlb);
   answers["scene_bytes"] = asked.ask("PUT", "/v1/scenes/more", triangle_glb(), kGlb);
@@ -246,34 +250,6 @@ TEST(Refusals, AreThoseOfTheDocument) {
   }
   for (const auto& [name, answer] : answers)
     EXPECT_TRUE(examples.contains(name)) << name << " is not in the document: " << answer.body;
-}
-
-TEST(Refusals, ASequenceWhoseSceneIsGoneFailsAsTheDocumentSays) {
-  const DataFolder folder;
-  ServeOptions options = test_options();
-  options.data_dir = folder.path().string();
-  auto first = std::make_unique<Asked>(options);
-  first->until_ready();
-  const std::string body = R"({"scene":"cornell","width":8,"height":8,"last_frame":0})";
-  const std::string path =
-      "/v1/sequences/" + json::parse(first->ask("POST", "/v1/sequences", body).body)["id"].get<std::string>();
-  EXPECT_TRUE(comes_true([&] { return first->ask("GET", path + "/archive").status == 200; }));
-  first.reset();
-  // As if its frame were still to be rendered, and of a scene that was uploaded.
-  Database(folder.path() / "sequences.sqlite")
-      .execute("UPDATE sequences SET state = 0, scene_digest = 'of another scene'; UPDATE frames SET state = 0");
-  Asked second(options);
-  second.until_ready();
-  json sequence;
-  EXPECT_TRUE(comes_true([&] {
-    sequence = json::parse(second.ask("GET", path).body);
-    return sequence["state"] == "failed";
-  }));
-  const json document = json::parse(protocol::openapi_document());
-  const json& content = document["paths"]["/v1/sequences/{id}"]["get"]["responses"]["200"]["content"];
-  const json& shown = content["application/json"]["examples"]["failed"]["value"];
-  EXPECT_EQ(sequence["state"], shown["state"]);
-  expect_problem("failed", sequence["problem"], shown["problem"]);
 }
 
 /// What the document says was asked is asked.

@@ -21,8 +21,10 @@ void spread_grey(std::vector<std::uint8_t>& rgba, bool has_alpha) {
   }
 }
 
+/// The first line of what the library says: the rest names the library.
 Error broken(OIIO::ImageInput& input) {
-  return invalid_input("", "the image cannot be decoded: " + input.geterror());
+  const std::string reason = input.geterror();
+  return invalid_input("", "the image cannot be decoded: " + reason.substr(0, reason.find('\n')));
 }
 
 Result<Image> decode(std::span<const std::byte> bytes, const EncodedImage& encoded) {

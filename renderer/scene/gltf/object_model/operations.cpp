@@ -14,6 +14,10 @@ struct Target {
   std::string where;  // the whole pointer
 };
 
+std::string one_of(const ObjectKind& kind) {
+  return (kind.singular.starts_with('e') ? "an " : "a ") + kind.singular;  // "environment"
+}
+
 Error is_missing(const Target& target) {
   const std::string of_what = target.kind.singular + ' ' + std::to_string(target.object);
   return Error{ErrorKind::kNotFound, target.where, target.kind.is_single ? "is not there" : of_what + " has none"};
@@ -161,7 +165,7 @@ Status apply_to_object(const Target& target, const Operation& operation) {
     if (const std::optional<Property> property = find_property(parent))
       return apply_to_element(parent, target, *property, operation);
   }
-  return Error{ErrorKind::kNotFound, target.where, "no such property of a " + target.kind.singular + " can be edited"};
+  return Error{ErrorKind::kNotFound, target.where, "no such property of " + one_of(target.kind) + " can be edited"};
 }
 
 /// `add` of a whole object: before the one at `token`, or at the end.
