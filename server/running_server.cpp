@@ -6,7 +6,8 @@ RunningServer::RunningServer(const ServeOptions& options, MakePictureSource make
     : base_path_(options.base_path),
       tls_(!options.tls_certificate.empty()),
       net_(net_options(options)),
-      service_(options, std::move(make_source), std::move(encode), [this] { return net_.connections(); }) {
+      service_(
+          options, std::move(make_source), [this] { return net_.connections(); }, std::move(encode)) {
   net_.start(service_);
 }
 

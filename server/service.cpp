@@ -169,8 +169,8 @@ void Service::State::count(const net::RequestHead* head, int status, double seco
              {"ms", seconds * 1e3}});
 }
 
-Service::Service(const ServeOptions& options, MakePictureSource make_source, FrameEncoders encode,
-                 std::function<int()> connections)
+Service::Service(const ServeOptions& options, MakePictureSource make_source, std::function<int()> connections,
+                 FrameEncoders encode)
     : state_(std::make_unique<State>(options, std::move(make_source), std::move(encode), std::move(connections))) {}
 
 Service::~Service() {

@@ -22,8 +22,8 @@ class Service : public net::Application {
  public:
   /// Begins to load the scenes and to warm the renderer up, both in threads of their own.
   /// `connections`: how many are open, for the metrics. Throws std::runtime_error if the data folder cannot be used.
-  Service(const ServeOptions& options, MakePictureSource make_source, FrameEncoders encode,
-          std::function<int()> connections);
+  Service(const ServeOptions& options, MakePictureSource make_source, std::function<int()> connections,
+          FrameEncoders encode = {});
   ~Service() override;
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
