@@ -53,18 +53,22 @@ inline Mask operator==(Mask a, Mask b) {
   return Mask(static_cast<MaskBits>(~(a.bits ^ b.bits)));
 }
 
-inline bool any(Mask mask) {
+// A bit for each lane, the first lane's the lowest.
+inline std::uint32_t lane_bits(Mask mask) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-  return mask.bits != 0;
+  return mask.bits;
 #elif defined(__AVX2__)
-  return _mm256_movemask_ps(reinterpret_cast<__m256>(mask.bits)) != 0;
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask.bits)));
 #elif defined(__SSE2__)
-  return _mm_movemask_ps(reinterpret_cast<__m128>(mask.bits)) != 0;
+  return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(mask.bits)));
 #else
-  std::int32_t bits = 0;
-  for (int i = 0; i < kLanes; ++i) bits |= mask.bits[i];
-  return bits != 0;
+  std::uint32_t bits = 0;
+  for (int i = 0; i < kLanes; ++i) bits |= mask.bits[i] != 0 ? 1u << i : 0u;
+  return bits;
 #endif
+}
+inline bool any(Mask mask) {
+  return lane_bits(mask) != 0;
 }
 
 // A float in each lane.

@@ -7,19 +7,11 @@
 #endif
 #endif
 
+#include "renderer/lanes/hierarchy_walk.h"
 #include "renderer/lanes/shading.h"
 
 namespace lightwell::lanes {
 namespace {
-
-Ints lane_numbers() {
-  Ints numbers;
-  for (int i = 0; i < kLanes; ++i) numbers[i] = i;
-  return numbers;
-}
-Mask in_run(std::uint32_t i, PixelRun run) {
-  return less(lane_numbers(), Ints{} + static_cast<std::int32_t>(run.end - i));
-}
 
 vec2 unpack_snorm(Ints words) {
   const auto unpacked = [](Ints halves) { return max(to_float(halves) * (1.0 / 32767.0), -1.0); };
@@ -54,21 +46,31 @@ void unpack(const PackedReceivers& packed, PatchPixels& pixels) {
   }
 }
 
-Receiver receiver_of(const PatchPixels& pixels, std::uint32_t i) {
+// `row` and `vector` read rows of PatchPixels.
+template <class Row, class Vector>
+Receiver receiver_of(const PatchPixels& pixels, const Row& row, const Vector& vector) {
   Receiver receiver;
-  for (int column = 0; column < 3; ++column) receiver.frame.columns[column] = load_vec3(pixels.frame[column], i);
-  receiver.out_direction = load_vec3(pixels.out_direction, i);
-  receiver.geometric_normal_ws = load_vec3(pixels.geometric_normal, i);
-  receiver.brdf.diffuse_albedo = load_vec3(pixels.diffuse_albedo, i);
-  receiver.brdf.f0 = load_vec3(pixels.f0, i);
-  receiver.brdf.f90 = load_float(&pixels.f90[i]);
-  receiver.brdf.f0_dielectric = load_float(&pixels.f0_dielectric[i]);
-  receiver.brdf.f90_dielectric = load_float(&pixels.f90_dielectric[i]);
-  receiver.brdf.alpha = load_float(&pixels.alpha[i]);
+  for (int column = 0; column < 3; ++column) receiver.frame.columns[column] = vector(pixels.frame[column]);
+  receiver.out_direction = vector(pixels.out_direction);
+  receiver.geometric_normal_ws = vector(pixels.geometric_normal);
+  receiver.brdf.diffuse_albedo = vector(pixels.diffuse_albedo);
+  receiver.brdf.f0 = vector(pixels.f0);
+  receiver.brdf.f90 = row(pixels.f90);
+  receiver.brdf.f0_dielectric = row(pixels.f0_dielectric);
+  receiver.brdf.f90_dielectric = row(pixels.f90_dielectric);
+  receiver.brdf.alpha = row(pixels.alpha);
   return receiver;
 }
-
-constexpr float kNothing = __builtin_inff();
+Receiver receiver_at(const PatchPixels& pixels, std::uint32_t i) {
+  return receiver_of(
+      pixels, [i](const float* from) { return load_float(&from[i]); },
+      [i](const PixelFloats* from) { return load_vec3(from, i); });
+}
+Receiver receivers_of(const PatchPixels& pixels, Ints places) {
+  return receiver_of(
+      pixels, [places](const float* from) { return gathered(from, places); },
+      [places](const PixelFloats* from) { return gathered_vec3(from, places); });
+}
 
 // Lanes beyond a run's end belong to the next run, which writes all its lanes anew, or to the padding.
 void start_rays(PatchPixels& pixels, PixelRun run, const PatchDirection& direction) {
@@ -80,22 +82,19 @@ void start_rays(PatchPixels& pixels, PixelRun run, const PatchDirection& directi
   }
 }
 
-constexpr float kEdgeTolerance = 1e-6f;  // of barycentrics: rounding, so that no ray passes between two candidates
-
 void meet(PatchPixels& pixels, PixelRun run, const AffineTriangle& triangle, std::uint32_t candidate) {
-  const vec3 corner = all_lanes(triangle.corner);
-  const vec3 u_axis = all_lanes(triangle.u), v_axis = all_lanes(triangle.v), t_axis = all_lanes(triangle.t);
+  meet_rays(pixels.from, {pixels.t, pixels.u, pixels.v, pixels.candidate}, run, triangle, candidate);
+}
+
+void collect_missed(const PatchPixels& pixels, PixelRun run, ParallelRays& rays) {
+  rays.count = 0;
   for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
-    const vec3 way = load_vec3(pixels.from, i) - corner;
-    const Float u = dot(way, u_axis), v = dot(way, v_axis), t = dot(way, t_axis);
-    const Float t_before = load_float(&pixels.t[i]);
-    const Mask nearer =
-        u >= -kEdgeTolerance && v >= -kEdgeTolerance && u + v <= 1.0f + kEdgeTolerance && t > 0.0 && t < t_before;
-    store(&pixels.t[i], select(nearer, t, t_before).v);
-    store(&pixels.u[i], select(nearer, max(u, 0.0), load_float(&pixels.u[i])).v);
-    store(&pixels.v[i], select(nearer, max(v, 0.0), load_float(&pixels.v[i])).v);
-    const Ints number = Ints{} + static_cast<std::int32_t>(candidate);
-    store(&pixels.candidate[i], select(nearer, number, load<Ints>(&pixels.candidate[i])));
+    const Mask missed = in_run(i, run) && !(load_float(&pixels.t[i]) < kNothing);
+    for (std::uint32_t lanes = lane_bits(missed); lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t pixel = i + static_cast<std::uint32_t>(__builtin_ctz(lanes));
+      for (int axis = 0; axis < 3; ++axis) rays.from[axis][rays.count] = pixels.from[axis][pixel];
+      rays.pixel[rays.count++] = pixel;
+    }
   }
 }
 
@@ -119,7 +118,7 @@ HitSurfaces all_lanes(const Candidate& candidate) {
   surfaces.roughness = from.roughness;
   surfaces.f0_dielectric = from.f0_dielectric;
   surfaces.specular_factor = from.specular_factor;
-  surfaces.lit = !from.unlit;
+  surfaces.lit = from.lit > 0.0f;
   return surfaces;
 }
 
@@ -128,21 +127,27 @@ vec3 load_rows(const ScatteredRays::Row* from, std::uint32_t i) {
 }
 
 HitSurfaces surfaces_of(const ScatteredRays& rays, std::uint32_t i) {
+  constexpr std::int32_t kStride = sizeof(HitSurface) / sizeof(float);
+  const Ints first = lane_numbers() * kStride;
+  const HitSurface& from = rays.surfaces[i];
+  const auto vector = [&](const float* member) {
+    return vec3(gathered(member, first), gathered(member + 1, first), gathered(member + 2, first));
+  };
+  const Float side = load_float(&rays.side[i]);
   HitSurfaces surfaces;
-  for (int corner = 0; corner < 3; ++corner) surfaces.normals[corner] = load_rows(rays.normals[corner], i);
-  surfaces.geometric_normal = load_rows(rays.geometric_normal, i);
-  surfaces.base_color = load_rows(rays.base_color, i);
-  surfaces.emission = load_rows(rays.emission, i);
-  surfaces.metallic = load_float(&rays.metallic[i]);
-  surfaces.roughness = load_float(&rays.roughness[i]);
-  surfaces.f0_dielectric = load_float(&rays.f0_dielectric[i]);
-  surfaces.specular_factor = load_float(&rays.specular_factor[i]);
-  surfaces.lit = load_float(&rays.lit[i]) > 0.0;
+  for (int corner = 0; corner < 3; ++corner) surfaces.normals[corner] = vector(from.normals[corner]) * side;
+  surfaces.geometric_normal = vector(from.geometric_normal) * side;
+  surfaces.base_color = vector(from.base_color);
+  surfaces.emission = vector(from.emission);
+  surfaces.metallic = gathered(&from.metallic, first);
+  surfaces.roughness = gathered(&from.roughness, first);
+  surfaces.f0_dielectric = gathered(&from.f0_dielectric, first);
+  surfaces.specular_factor = gathered(&from.specular_factor, first);
+  surfaces.lit = gathered(&from.lit, first) > 0.0;
   return surfaces;
 }
 
-vec3 normals_of(const PatchPixels& pixels, std::uint32_t i, vec3 along, const HitSurfaces& surfaces) {
-  const Float u = load_float(&pixels.u[i]), v = load_float(&pixels.v[i]);
+vec3 normals_of(Float u, Float v, vec3 along, const HitSurfaces& surfaces) {
   const vec3 interpolated =
       normalize(surfaces.normals[0] * (1.0 - u - v) + surfaces.normals[1] * u + surfaces.normals[2] * v);
   return visible_shading_normal(interpolated, surfaces.geometric_normal, -along);
@@ -172,7 +177,7 @@ __attribute__((flatten)) void weigh(PatchPixels& pixels, PixelRun run, const Pat
     const Mask missed = in_run(i, run) && t >= kNothing;
     store(&pixels.distance[i], (load_float(&pixels.distance[i]) + select(hit, t, 0.0)).v);
     store(&pixels.hit_count[i], (load_float(&pixels.hit_count[i]) + select(hit, 1.0, 0.0)).v);
-    const vec3 weight = select(hit || missed, weight_of(receiver_of(pixels, i), along, direction.pdf), vec3(0.0));
+    const vec3 weight = select(hit || missed, weight_of(receiver_at(pixels, i), along, direction.pdf), vec3(0.0));
     store_vec3(pixels.weight, i, weight);
     if (any(missed)) add_to_sum(pixels, i, select(missed, weight * sky_of(environment, along.y), vec3(0.0)));
   }
@@ -191,7 +196,9 @@ __attribute__((flatten)) bool place_hits(PatchPixels& pixels, PixelRun run, vec3
     if (!any(lit)) continue;
     any_lit = true;
     store_vec3(pixels.hit_position, i, load_vec3(pixels.from, i) + select(lit, t, 0.0) * along);
-    store_vec3(pixels.hit_normal, i, flat_normal ? *flat_normal : normals_of(pixels, i, along, surfaces));
+    store_vec3(
+        pixels.hit_normal, i,
+        flat_normal ? *flat_normal : normals_of(load_float(&pixels.u[i]), load_float(&pixels.v[i]), along, surfaces));
     add_to_sum(pixels, i, select(lit, weight * surfaces.emission, vec3(0.0)));
   }
   return any_lit;
@@ -239,25 +246,25 @@ void gather(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, 
   }
 }
 
-__attribute__((flatten)) void gather_scattered(PatchPixels& pixels, const ScatteredRays& rays, std::uint32_t count,
+__attribute__((flatten)) void gather_scattered(const PatchPixels& pixels, ScatteredRays& rays, std::uint32_t count,
                                                const LightEnvironment& environment) {
   Lighting lighting(environment);
-  const PixelRun run{0, count};
   for (std::uint32_t i = 0; i < count; i += kLanes) {
+    const Mask used = in_run(i, {0, count});
+    const Ints places = load<Ints>(&rays.pixel[i]);
     const vec3 along = load_rows(rays.direction_ws, i);
-    const Float t = load_float(&pixels.t[i]);
-    const Mask hit = in_run(i, run) && t < kNothing;
-    store(&pixels.distance[i], (load_float(&pixels.distance[i]) + select(hit, t, 0.0)).v);
-    store(&pixels.hit_count[i], (load_float(&pixels.hit_count[i]) + select(hit, 1.0, 0.0)).v);
-    const vec3 weight = weight_of(receiver_of(pixels, i), along, load_float(&rays.pdf[i]));
-    const Mask weighs = in_run(i, run) && weight.x + weight.y + weight.z > 0.0;
+    const Float t = load_float(&rays.t[i]);
+    const Mask hit = used && t < kNothing;
+    const vec3 weight = weight_of(receivers_of(pixels, places), along, load_float(&rays.pdf[i]));
+    const Mask weighs = used && weight.x + weight.y + weight.z > 0.0;
     const HitSurfaces surfaces = surfaces_of(rays, i);
-    const vec3 position_ws = load_vec3(pixels.from, i) + select(hit, t, 0.0) * along;
-    const vec3 reflected = lighting.reflected(hit && weighs, brdf_of(surfaces), position_ws,
-                                              normals_of(pixels, i, along, surfaces), -along);
+    const vec3 position_ws = load_rows(rays.from, i) + select(hit, t, 0.0) * along;
+    const vec3 normal_ws = normals_of(load_float(&rays.u[i]), load_float(&rays.v[i]), along, surfaces);
+    const vec3 reflected = lighting.reflected(hit && weighs, brdf_of(surfaces), position_ws, normal_ws, -along);
     const vec3 from_hits = select(surfaces.lit, surfaces.emission + reflected, vec3(0.0));
-    const vec3 light = select(hit, from_hits, sky_of(environment, along.y));
-    store_vec3(pixels.sum, i, load_vec3(pixels.sum, i) + select(weighs, weight * light, vec3(0.0)));
+    const vec3 sum = select(weighs, weight * select(hit, from_hits, sky_of(environment, along.y)), vec3(0.0));
+    store(&rays.sum[0][i], sum.x.v), store(&rays.sum[1][i], sum.y.v), store(&rays.sum[2][i], sum.z.v);
+    store(&rays.distance[i], select(hit, t, 0.0).v);
   }
 }
 
@@ -272,6 +279,8 @@ constexpr const char* kInstructions = "plain";
 }  // namespace
 
 extern const PatchKernels LIGHTWELL_LANES_NAME;
-const PatchKernels LIGHTWELL_LANES_NAME = {kInstructions, unpack, start_rays, meet, gather, gather_scattered};
+const PatchKernels LIGHTWELL_LANES_NAME = {
+    kInstructions, unpack,          start_rays, meet, collect_missed, nearest_hits, nearest_hits_of_single_rays,
+    gather,        gather_scattered};
 
 }  // namespace lightwell::lanes

@@ -2,8 +2,9 @@
 // plain functions, for they are compiled for several kinds of processor (renderer/lanes/glsl.h).
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+
+#include "renderer/tracing/wide_hierarchy.h"
 
 namespace lightwell::lanes {
 
@@ -39,10 +40,6 @@ struct alignas(64) PatchPixels {
   PixelFloats hit_count;
 };
 
-/// PatchPixels as rows of floats: from here to there is what a pixel gathers with.
-constexpr std::size_t kFirstReceiverRow = offsetof(PatchPixels, frame) / sizeof(PixelFloats);
-constexpr std::size_t kReceiverRowsEnd = offsetof(PatchPixels, from) / sizeof(PixelFloats);
-
 /// Consecutive pixels [begin, end) that refer to the same patch.
 struct PixelRun {
   std::uint32_t begin, end;
@@ -61,14 +58,14 @@ struct PatchDirection {
 };
 
 /// What a triangle reflects.
-struct HitSurface {
+struct HitSurface {           // of words alone, so that lanes find their own
   float normals[3][3];        // at the corners; interpolated they need not be unit
   float geometric_normal[3];  // unit, by the winding
   float base_color[3];
   float metallic, roughness, f0_dielectric, specular_factor;
-  float emission[3];  // nit
-  bool unlit;         // neither reflects nor emits
-  bool is_flat;       // the normals are the same at all corners
+  float emission[3];      // nit
+  float lit;              // 1; 0 where it neither reflects nor emits
+  std::uint32_t is_flat;  // the normals are the same at all corners
 };
 
 /// A triangle that rays may meet.
@@ -77,13 +74,37 @@ struct Candidate {
   float side;  // 1 if the rays come from the geometric normal's side, else -1
 };
 
-/// Rays of pixels, directions and triangles that have nothing in common, one a lane, and what they meet.
+/// Rays of pixels, directions and triangles that have nothing in common, one a lane, what they meet, and what comes of
+/// it.
 struct alignas(64) ScatteredRays {
   using Row = float[kMostLanes];
-  Row direction_ws[3], pdf;                // as PatchDirection
-  Row normals[3][3], geometric_normal[3];  // as HitSurface, on the side that the ray comes from
-  Row base_color[3], metallic, roughness, f0_dielectric, specular_factor, emission[3];
-  Row lit;  // 1, or 0 for an unlit surface
+  std::uint32_t pixel[kMostLanes];  // in PatchPixels
+  Row from[3];                      // origins, world space
+  Row direction_ws[3], pdf;         // as PatchDirection
+  Row t, u, v;                      // t is infinite where there is no hit
+  Row side;                         // as Candidate
+  HitSurface surfaces[kMostLanes];
+  Row sum[3], distance;  // light times weight; of the hit, metres, or 0
+};
+
+/// Rays of some pixels along one direction, and what they meet.
+struct alignas(64) ParallelRays {
+  PixelWords pixel;  // in PatchPixels
+  PixelFloats from[3];
+  PixelFloats t, u, v;    // t is infinite where nothing is met
+  PixelWords triangle;    // leaf of the hierarchy * kWide + which of its triangles
+  float direction_ws[3];  // unit
+  std::uint32_t count;    // up to kChunkPixels
+};
+
+/// As Ray and Hit in renderer/tracing/tracer.h.
+struct SingleRay {
+  float origin_ws[3], t_min, direction_ws[3], t_max;
+};
+struct SingleHit {
+  float t;
+  std::uint32_t instance, triangle;
+  float u, v;
 };
 
 /// `struct Light` of shaders/lights.glsl as std140 lays it out.
@@ -121,13 +142,19 @@ struct PatchKernels {
   void (*start_rays)(PatchPixels& pixels, PixelRun run, const PatchDirection& direction);
   /// Keeps the candidate where its triangle is met nearer than what is kept.
   void (*meet)(PatchPixels& pixels, PixelRun run, const AffineTriangle& triangle, std::uint32_t candidate);
+  /// Makes rays of the pixels of the run that have met nothing.
+  void (*collect_missed)(const PatchPixels& pixels, PixelRun run, ParallelRays& rays);
+  /// Finds the nearest triangle on each of at least one ray.
+  void (*nearest_hits)(const WideHierarchy& hierarchy, ParallelRays& rays);
+  /// The same for rays that have nothing in common.
+  void (*nearest_hits_of_single_rays)(const WideHierarchy& hierarchy, const SingleRay* rays, SingleHit* hits,
+                                      std::uint32_t count);
   /// Adds to the sums what arrives from the candidates that are kept, and from the sky where there is none; nothing
   /// where t is negative.
   void (*gather)(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, const Candidate* candidates,
                  std::uint32_t candidate_count, const LightEnvironment& environment);
-  /// The same for the first `count` <= kMostLanes pixels and as many rays, from PatchPixels::from; t, u and v tell what
-  /// each meets.
-  void (*gather_scattered)(PatchPixels& pixels, const ScatteredRays& rays, std::uint32_t count,
+  /// The same for `count` <= kMostLanes rays, but that it adds nothing to the pixels' sums.
+  void (*gather_scattered)(const PatchPixels& pixels, ScatteredRays& rays, std::uint32_t count,
                            const LightEnvironment& environment);
 };
 

@@ -2,38 +2,13 @@
 // kind of processor: see renderer/lanes/glsl.h.
 #pragma once
 
-#include "renderer/lanes/glsl.h"
-#include "renderer/lanes/patch_light.h"
+#include "renderer/lanes/rows.h"
 
 #define LANES
 #define POINT_LIGHTS
 
 namespace lightwell::lanes {
 namespace {
-
-template <class Vector>
-Vector load(const void* from) {
-  Vector vector;
-  __builtin_memcpy(&vector, from, sizeof vector);
-  return vector;
-}
-template <class Vector>
-void store(void* to, Vector vector) {
-  __builtin_memcpy(to, &vector, sizeof vector);
-}
-
-Float load_float(const float* from) {
-  return load<Floats>(from);
-}
-vec3 load_vec3(const PixelFloats* from, std::uint32_t i) {
-  return {load_float(&from[0][i]), load_float(&from[1][i]), load_float(&from[2][i])};
-}
-void store_vec3(PixelFloats* to, std::uint32_t i, vec3 value) {
-  store(&to[0][i], value.x.v), store(&to[1][i], value.y.v), store(&to[2][i], value.z.v);
-}
-vec3 all_lanes(const float* value) {
-  return {value[0], value[1], value[2]};
-}
 
 #define float Float
 #define bool Mask

@@ -39,7 +39,10 @@ HostChunk::HostChunk(const HostBatch& batch, TriangleCache& triangles, std::uint
 
 void HostChunk::run() {
   for (std::uint32_t direction = 0; direction < batch_.direction_count; ++direction)
-    for (std::uint32_t r = 0; r < run_count_; ++r) gather(runs_[r], direction);
+    for (std::uint32_t r = 0; r < run_count_; ++r) {
+      prefetch(runs_[r], direction + 4);
+      gather(runs_[r], direction);
+    }
   scattered_.finish();
 }
 
@@ -64,10 +67,19 @@ void HostChunk::add_origin(std::uint32_t i, const PixelOrigin& origin) {
   ++runs_[run_count_ - 1].pixels.end;
 }
 
+// A patch's directions lie far apart, which the processor does not foresee.
+void HostChunk::prefetch(const PatchRun& run, std::uint32_t direction_index) const {
+  const std::size_t ray = std::size_t{direction_index} * batch_.patch_count + run.patch_index;
+  __builtin_prefetch(&batch_.directions[ray]);
+  __builtin_prefetch(&batch_.candidates[ray]);
+}
+
 void HostChunk::gather(const PatchRun& run, std::uint32_t direction_index) {
   const std::size_t ray = std::size_t{direction_index} * batch_.patch_count + run.patch_index;
   const lanes::PatchDirection& direction = batch_.directions[ray];
   if (direction.pdf <= 0.0f) return;
+  if (run.patch_index >= batch_.first_unmatched && batch_.group_count == 1)
+    return scatter_alone(run.pixels.begin, direction, batch_.candidates[ray]);
   kernels_.start_rays(pixels_, run.pixels, direction);
   candidate_count_ = 0;
   for (std::uint32_t group = 0; group < batch_.group_count; ++group) {
@@ -82,13 +94,25 @@ void HostChunk::gather(const PatchRun& run, std::uint32_t direction_index) {
     kernels_.gather(pixels_, run.pixels, direction, candidates_.data(), candidate_count_, batch_.environment);
 }
 
+// What the pixel's own patch meets is what it meets itself. As start_rays() of the kernels.
+void HostChunk::scatter_alone(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit) {
+  const PixelOrigin& origin = batch_.origins[first_ + pixel];
+  const bool is_down = glm::dot(origin.down_ws, lanes::along(direction)) > 0.0f;
+  scattered_.add(pixel, is_down ? origin.above_ws + origin.down_ws : origin.above_ws, direction, hit);
+}
+
+// Where the ray at hand starts.
+glm::vec3 HostChunk::start_of(std::uint32_t pixel) const {
+  return {pixels_.from[0][pixel], pixels_.from[1][pixel], pixels_.from[2][pixel]};
+}
+
 void HostChunk::scatter(lanes::PixelRun run, const lanes::PatchDirection& direction) {
   for (std::uint32_t i = run.begin; i < run.end; ++i) {
     if (pixels_.t[i] < 0.0f) continue;
     const bool is_hit = pixels_.t[i] < kNothing;
     Hit hit = is_hit ? candidate_hits_[pixels_.candidate[i]] : Hit{kMiss, 0, 0, 0.0f, 0.0f};
     if (is_hit) hit.t = pixels_.t[i], hit.u = pixels_.u[i], hit.v = pixels_.v[i];
-    scattered_.add(i, direction, hit);
+    scattered_.add(i, start_of(i), direction, hit);
   }
 }
 
@@ -109,33 +133,58 @@ void HostChunk::add_candidate(const PlacedTriangle& placed, glm::vec3 direction)
 
 // Pixels that meet no candidate trace the ray themselves. A few triangles so found become candidates.
 void HostChunk::trace_missed(lanes::PixelRun run, const lanes::PatchDirection& direction) {
-  std::uint32_t count = 0;
-  for (std::uint32_t i = run.begin; i < run.end; ++i) {
-    if (pixels_.t[i] < kNothing) continue;
-    missed_[count] = i;
-    missed_rays_[count++] = {
-        {pixels_.from[0][i], pixels_.from[1][i], pixels_.from[2][i]}, 0.0f, lanes::along(direction), 1e30f};
+  kernels_.collect_missed(pixels_, run, missed_);
+  if (missed_.count == 0) return;
+  if (batch_.hierarchy)
+    trace_together(*batch_.hierarchy, direction);
+  else
+    trace(direction);
+  traced_ += missed_.count;
+}
+
+void HostChunk::trace_together(const WideHierarchy& hierarchy, const lanes::PatchDirection& direction) {
+  for (int axis = 0; axis < 3; ++axis) missed_.direction_ws[axis] = direction.direction_ws[axis];
+  kernels_.nearest_hits(hierarchy, missed_);
+  for (std::uint32_t n = 0; n < missed_.count; ++n) {
+    if (!(missed_.t[n] < kNothing)) continue;
+    const WideLeaf& leaf = hierarchy.leaves[missed_.triangle[n] / kWide];
+    const std::uint32_t which = missed_.triangle[n] % kWide;
+    keep_hit(missed_.pixel[n], direction,
+             {missed_.t[n], leaf.instance[which], leaf.triangle[which], missed_.u[n], missed_.v[n]});
   }
-  batch_.tracer.closest_hits(std::span(missed_rays_).first(count), std::span(missed_hits_).first(count));
-  for (std::uint32_t n = 0; n < count; ++n)
-    if (missed_hits_[n].t >= 0.0f) keep_hit(missed_[n], direction, missed_hits_[n]);
-  traced_ += count;
+}
+
+void HostChunk::trace(const lanes::PatchDirection& direction) {
+  for (std::uint32_t n = 0; n < missed_.count; ++n)
+    missed_rays_[n] = {
+        {missed_.from[0][n], missed_.from[1][n], missed_.from[2][n]}, 0.0f, lanes::along(direction), 1e30f};
+  batch_.tracer.closest_hits(std::span(missed_rays_).first(missed_.count),
+                             std::span(missed_hits_).first(missed_.count));
+  for (std::uint32_t n = 0; n < missed_.count; ++n)
+    if (missed_hits_[n].t >= 0.0f) keep_hit(missed_.pixel[n], direction, missed_hits_[n]);
 }
 
 void HostChunk::keep_hit(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit) {
-  std::uint32_t candidate = 0;
-  while (candidate < candidate_count_ &&
-         (candidate_hits_[candidate].instance != hit.instance || candidate_hits_[candidate].triangle != hit.triangle))
-    ++candidate;
-  if (candidate == batch_.group_count + kMoreCandidates) {
+  const std::uint32_t candidate = candidate_of(hit.instance, hit.triangle, direction);
+  if (candidate == candidates_.size()) {
     pixels_.t[pixel] = kMiss;
-    return scattered_.add(pixel, direction, hit);
+    return scattered_.add(pixel, start_of(pixel), direction, hit);
   }
-  if (candidate == candidate_count_) add_candidate(triangles_.at(hit.instance, hit.triangle), lanes::along(direction));
   pixels_.t[pixel] = hit.t;
   pixels_.u[pixel] = hit.u;
   pixels_.v[pixel] = hit.v;
   pixels_.candidate[pixel] = candidate;
+}
+
+// Past all of them if there is no room for one more. The last ones found are the likeliest.
+std::uint32_t HostChunk::candidate_of(std::uint32_t instance, std::uint32_t triangle,
+                                      const lanes::PatchDirection& direction) {
+  for (std::uint32_t candidate = candidate_count_; candidate-- > 0;)
+    if (candidate_hits_[candidate].instance == instance && candidate_hits_[candidate].triangle == triangle)
+      return candidate;
+  if (candidate_count_ == candidates_.size()) return candidate_count_;
+  add_candidate(triangles_.at(instance, triangle), lanes::along(direction));
+  return candidate_count_ - 1;
 }
 
 }  // namespace lightwell

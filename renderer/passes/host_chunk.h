@@ -17,10 +17,12 @@ struct HostBatch {
   const lanes::PatchDirection* directions;
   const Hit* candidates;
   std::uint32_t patch_count, direction_count, group_count;
+  std::uint32_t first_unmatched;  // patches from here on are single pixels
   bool trace_missed;
   DeviceScene::HostHitData scene;
   const lanes::LightEnvironment& environment;
   const HostTracer& tracer;
+  const WideHierarchy* hierarchy;  // null: the tracer finds what pixels meet beside the candidates
 };
 static_assert(sizeof(lanes::PatchDirection) == sizeof(glm::vec4));
 
@@ -42,14 +44,20 @@ class HostChunk {
     lanes::PixelRun pixels;
     std::uint32_t patch_index;
   };
+  glm::vec3 start_of(std::uint32_t pixel) const;
   void add_origin(std::uint32_t i, const PixelOrigin& origin);
+  void prefetch(const PatchRun& run, std::uint32_t direction_index) const;
   void gather(const PatchRun& run, std::uint32_t direction_index);
+  void scatter_alone(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit);
   void scatter(lanes::PixelRun run, const lanes::PatchDirection& direction);
   void try_candidate(lanes::PixelRun run, std::uint32_t instance, std::uint32_t triangle,
                      const lanes::PatchDirection& direction);
   void add_candidate(const PlacedTriangle& placed, glm::vec3 direction);
   void trace_missed(lanes::PixelRun run, const lanes::PatchDirection& direction);
+  void trace(const lanes::PatchDirection& direction);
+  void trace_together(const WideHierarchy& hierarchy, const lanes::PatchDirection& direction);
   void keep_hit(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit);
+  std::uint32_t candidate_of(std::uint32_t instance, std::uint32_t triangle, const lanes::PatchDirection& direction);
 
   static constexpr std::uint32_t kLongRun = 8;         // pixels, from which on whole vectors pay
   static constexpr std::uint32_t kMoreCandidates = 4;  // each costs as much as a vector of scattered rays
@@ -66,7 +74,7 @@ class HostChunk {
   std::vector<lanes::Candidate> candidates_;
   std::vector<Hit> candidate_hits_;
   std::uint32_t candidate_count_ = 0;
-  std::array<std::uint32_t, lanes::kChunkPixels> missed_;  // pixels
+  lanes::ParallelRays missed_;
   std::array<Ray, lanes::kChunkPixels> missed_rays_;
   std::array<Hit, lanes::kChunkPixels> missed_hits_;
   std::uint32_t traced_ = 0;

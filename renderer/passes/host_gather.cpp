@@ -73,23 +73,27 @@ std::uint64_t HostGatherPass::run(const DeviceScene& scene, HostTracer& tracer, 
                        batch.rays.patches.count,
                        directions.count,
                        batch.group_count,
+                       batch.rays.patches.first_unmatched,
                        batch.trace_missed,
                        scene.host_hit_data(),
                        lights_->environment,
-                       tracer};
+                       tracer,
+                       batch.trace_missed ? tracer.wide_hierarchy() : nullptr};
   gl::wait_for_device();
   if (sums_.reserve(std::uint64_t{batch.rays.slots} * sizeof(glm::vec4))) sum_texels_.attach(sums_);
   auto* sums = reinterpret_cast<glm::vec4*>(sums_.host());
+  TriangleCaches caches(host.scene, tracer);
   std::atomic<std::uint64_t> traced = 0;
   constexpr std::uint32_t kPixelsAtOnce = 4 * lanes::kChunkPixels;
   tracer.parallel_for(batch.rays.slots, kPixelsAtOnce, [&](std::uint32_t begin, std::uint32_t end) {
-    TriangleCache triangles(host.scene, tracer);
+    std::unique_ptr<TriangleCache> triangles = caches.take();
     for (std::uint32_t first = begin; first < end; first += lanes::kChunkPixels) {
-      HostChunk chunk(host, triangles, first, std::min(first + lanes::kChunkPixels, end));
+      HostChunk chunk(host, *triangles, first, std::min(first + lanes::kChunkPixels, end));
       chunk.run();
       chunk.add_to(sums, directions.first == 0);
       traced += chunk.traced();
     }
+    caches.give_back(std::move(triangles));
   });
   return traced;
 }

@@ -49,7 +49,7 @@ lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32
   surface.f0_dielectric = material.f0_dielectric;
   surface.specular_factor = material.specular_factor;
   assign(surface.emission, material.emission);
-  surface.unlit = (material.flags & kDeviceMaterialUnlit) != 0;
+  surface.lit = (material.flags & kDeviceMaterialUnlit) != 0 ? 0.0f : 1.0f;
   surface.is_flat = triangle.normals[0] == triangle.normals[1] && triangle.normals[1] == triangle.normals[2];
   return surface;
 }
@@ -62,11 +62,24 @@ float side_of(const lanes::HitSurface& surface, glm::vec3 direction) {
 }
 
 const PlacedTriangle& TriangleCache::at(std::uint32_t instance, std::uint32_t triangle) {
-  constexpr std::uint32_t kStride = 37;  // so that instances of one mesh do not share places
-  PlacedTriangle& placed = placed_[(triangle + instance * kStride) % placed_.size()];
+  constexpr std::uint32_t kStride = 397;  // so that instances of one mesh do not share places
+  PlacedTriangle& placed = placed_[(triangle + instance * kStride) % kPlaces];
   if (placed.instance != instance || placed.triangle != triangle)
     placed = {instance, triangle, tracer_.corners_ws(instance, triangle), hit_surface(scene_, instance, triangle)};
   return placed;
+}
+
+std::unique_ptr<TriangleCache> TriangleCaches::take() {
+  const std::scoped_lock lock(mutex_);
+  if (idle_.empty()) return std::make_unique<TriangleCache>(scene_, tracer_);
+  std::unique_ptr<TriangleCache> cache = std::move(idle_.back());
+  idle_.pop_back();
+  return cache;
+}
+
+void TriangleCaches::give_back(std::unique_ptr<TriangleCache> cache) {
+  const std::scoped_lock lock(mutex_);
+  idle_.push_back(std::move(cache));
 }
 
 }  // namespace lightwell

@@ -4,6 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
+#include <mutex>
+#include <vector>
 
 #include "renderer/lanes/affine_triangle.h"
 #include "renderer/passes/device_scene.h"
@@ -20,18 +23,36 @@ struct PlacedTriangle {
 /// 1 if rays of the direction come from the side of the geometric normal, else -1.
 float side_of(const lanes::HitSurface& surface, glm::vec3 direction);
 
-/// The triangles that a thread met last: neighbours in patches and directions meet the same ones.
+/// The triangles that a thread met last in a frame: neighbours in patches and directions meet the same ones.
 class TriangleCache {
  public:
-  TriangleCache(const DeviceScene::HostHitData& scene, const HostTracer& tracer) : scene_(scene), tracer_(tracer) {}
+  TriangleCache(const DeviceScene::HostHitData& scene, const HostTracer& tracer)
+      : scene_(scene), tracer_(tracer), placed_(kPlaces) {}
 
   /// Valid until the next call.
   const PlacedTriangle& at(std::uint32_t instance, std::uint32_t triangle);
 
  private:
-  const DeviceScene::HostHitData& scene_;
+  static constexpr std::size_t kPlaces = 2048;  // 300 kB, for the second level of a processor's caches
+
+  const DeviceScene::HostHitData scene_;
   const HostTracer& tracer_;
-  std::array<PlacedTriangle, 128> placed_;
+  std::vector<PlacedTriangle> placed_;
+};
+
+/// One for each thread that is at work.
+class TriangleCaches {
+ public:
+  TriangleCaches(const DeviceScene::HostHitData& scene, const HostTracer& tracer) : scene_(scene), tracer_(tracer) {}
+
+  std::unique_ptr<TriangleCache> take();
+  void give_back(std::unique_ptr<TriangleCache> cache);
+
+ private:
+  const DeviceScene::HostHitData scene_;
+  const HostTracer& tracer_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<TriangleCache>> idle_;  // guarded by mutex_
 };
 
 }  // namespace lightwell

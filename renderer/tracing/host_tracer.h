@@ -6,6 +6,7 @@
 #include <span>
 
 #include "renderer/tracing/tracer.h"
+#include "renderer/tracing/wide_hierarchy.h"
 
 namespace lightwell {
 
@@ -17,6 +18,9 @@ class HostTracer {
                             const std::function<void(std::uint32_t begin, std::uint32_t end)>& body) = 0;
   /// As Tracer::closest_hit, at once and on the thread that calls, for at most 1024 rays; `hits` is as long.
   virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
+  /// Everything as it was at the last update, for rays that share a direction; null where there is too much of it, or
+  /// coverage to be tested. Not for several threads at once; valid until the next update.
+  virtual const WideHierarchy* wide_hierarchy() = 0;
   /// The corners of a triangle in the world.
   virtual std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const = 0;
 };

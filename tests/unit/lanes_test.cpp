@@ -142,6 +142,7 @@ TEST_P(LanesTest, HitsReflectAPointLight) {
   for (float& channel : ceiling.base_color) channel = 0.5f;
   ceiling.emission[1] = 1.0f;
   ceiling.roughness = 1.0f;
+  ceiling.lit = 1.0f;
   const Candidate candidate{&ceiling, -1.0f};  // seen from its back
   const PixelRun run{0, kChunkPixels};
   kernels.start_rays(pixels, run, kUp);
@@ -163,7 +164,7 @@ TEST_P(LanesTest, HitsReflectAPointLight) {
   kernels.meet(*shaded.pixels, run, triangle_above(2.0f), 0);
   kernels.gather(*shaded.pixels, run, kUp, &candidate, 1, environment);
   EXPECT_NEAR(shaded.pixels->sum[1][6], 0.5f, 1e-3f);
-  ceiling.unlit = true;
+  ceiling.lit = 0.0f;
   Floor unlit(kernels);
   kernels.start_rays(*unlit.pixels, run, kUp);
   kernels.meet(*unlit.pixels, run, triangle_above(2.0f), 0);
@@ -215,7 +216,7 @@ TEST_P(LanesTest, ScatteredRaysAndAllProcessorsAgree) {
   for (auto& normal : surface.normals) normal[0] = any(random) - 0.5f, normal[1] = any(random) - 0.5f, normal[2] = 1.0f;
   surface.geometric_normal[2] = 1.0f;
   surface.base_color[0] = 0.7f, surface.base_color[1] = 0.5f, surface.metallic = 0.4f, surface.roughness = 0.5f;
-  surface.f0_dielectric = 0.04f, surface.specular_factor = 1.0f;
+  surface.f0_dielectric = 0.04f, surface.specular_factor = 1.0f, surface.lit = 1.0f;
   const Candidate candidate{&surface, -1.0f};
   const PatchDirection direction{{0.28f, 0.0f, 0.96f}, 0.3f};
   const AffineTriangle triangle{
@@ -232,20 +233,23 @@ TEST_P(LanesTest, ScatteredRaysAndAllProcessorsAgree) {
       return pixels;
     }
     const auto rays = std::make_unique<ScatteredRays>();
-    for (std::uint32_t lane = 0; lane < kMostLanes; ++lane) {
+    std::memset(rays.get(), 0, sizeof *rays);
+    constexpr std::uint32_t kRays = kMostLanes - 1;
+    for (std::uint32_t lane = 0; lane < kRays; ++lane) {
+      const std::uint32_t pixel = kRays - 1 - lane;
+      rays->pixel[lane] = pixel;
       for (int axis = 0; axis < 3; ++axis) {
+        rays->from[axis][lane] = pixels.from[axis][pixel];
         rays->direction_ws[axis][lane] = direction.direction_ws[axis];
-        for (int corner = 0; corner < 3; ++corner) rays->normals[corner][axis][lane] = -surface.normals[corner][axis];
-        rays->geometric_normal[axis][lane] = -surface.geometric_normal[axis];
-        rays->base_color[axis][lane] = surface.base_color[axis];
-        rays->emission[axis][lane] = 0.0f;
       }
       rays->pdf[lane] = direction.pdf;
-      rays->metallic[lane] = surface.metallic, rays->roughness[lane] = surface.roughness;
-      rays->f0_dielectric[lane] = surface.f0_dielectric, rays->specular_factor[lane] = surface.specular_factor;
-      rays->lit[lane] = 1.0f;
+      rays->t[lane] = pixels.t[pixel], rays->u[lane] = pixels.u[pixel], rays->v[lane] = pixels.v[pixel];
+      rays->side[lane] = candidate.side;
+      rays->surfaces[lane] = surface;
     }
-    kernels.gather_scattered(pixels, *rays, kMostLanes - 1, environment);
+    kernels.gather_scattered(pixels, *rays, kRays, environment);
+    for (std::uint32_t lane = 0; lane < kRays; ++lane)
+      for (int channel = 0; channel < 3; ++channel) pixels.sum[channel][rays->pixel[lane]] = rays->sum[channel][lane];
     return pixels;
   };
   const PatchPixels expected = gathered(*usable_patch_kernels().back(), false);

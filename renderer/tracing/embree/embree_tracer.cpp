@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "renderer/check.h"
@@ -12,6 +13,7 @@
 #include "renderer/tracing/embree/view_rays.h"
 #include "renderer/tracing/host_tracer.h"
 #include "renderer/tracing/thread_pool.h"
+#include "renderer/tracing/world_hierarchy.h"
 
 namespace lightwell {
 namespace {
@@ -122,7 +124,11 @@ class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer 
 
   HostTracer* host() override { return this; }
 
-  void update(const TraceScene& scene) override { scene_.update(scene); }
+  void update(const TraceScene& scene) override {
+    scene_.update(scene);
+    updated_ = scene;
+    wide_hierarchy_.reset();
+  }
 
   void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list) override {
     LIGHTWELL_CHECK_OP(std::uint64_t{count} * sizeof(Hit), <=, hits.size_bytes());
@@ -205,7 +211,7 @@ class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer 
     });
   }
 
-  std::uint64_t memory_bytes() const override { return scene_.memory_bytes(); }
+  std::uint64_t memory_bytes() const override { return scene_.memory_bytes() + world_hierarchy_.memory_bytes(); }
 
  private:
   void parallel_for(std::uint32_t count, std::uint32_t chunk,
@@ -222,6 +228,10 @@ class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer 
       closest_hits_at_once<8>(scene_, rays, hits);
     else
       closest_hits_at_once<4>(scene_, rays, hits);
+  }
+  const WideHierarchy* wide_hierarchy() override {
+    if (!wide_hierarchy_) wide_hierarchy_ = world_hierarchy_.update(updated_, pool_);
+    return *wide_hierarchy_;
   }
   std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const override {
     return scene_.corners_ws(instance, triangle);
@@ -257,6 +267,9 @@ class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer 
 
   ThreadPool pool_;
   EmbreeScene scene_;
+  TraceScene updated_;  // valid as long as the frame's Pose
+  WorldHierarchy world_hierarchy_;
+  std::optional<const WideHierarchy*> wide_hierarchy_;  // once it was asked for since the update
   ChunkLists chunk_lists_;
   int width_ = 4;
 };
