@@ -32,14 +32,16 @@ class HierarchyWalk {
   // try_leaf(leaf, number, far) gives how far is still to be looked.
   template <class TryLeaf>
   void follow(float far, const TryLeaf& try_leaf) {
-    push_children(hierarchy_.nodes[hierarchy_.root], far);
-    while (size_ > 0) {
-      const Pending next = stack_[--size_];
-      if (next.near > far) continue;
+    Pending next{0.0f, hierarchy_.root, false};
+    for (;;) {
       if (next.is_leaf)
         far = try_leaf(hierarchy_.leaves[next.child], next.child, far);
       else
         push_children(hierarchy_.nodes[next.child], far);
+      do {
+        if (size_ == 0) return;
+        next = stack_[--size_];
+      } while (next.near > far);
     }
   }
 

@@ -40,6 +40,8 @@ void unpack(const PackedReceivers& packed, PatchPixels& pixels) {
     store(&pixels.f0_dielectric[i], brdf.f0_dielectric.v);
     store(&pixels.f90_dielectric[i], brdf.f90_dielectric.v);
     store(&pixels.alpha[i], brdf.alpha.v);
+    store(&pixels.least_lifted[i], brdf.least_lifted.v);
+    store(&pixels.lifted_slope[i], brdf.lifted_slope.v);
     store_vec3(pixels.sum, i, vec3(0.0));
     store(&pixels.distance[i], Floats{});
     store(&pixels.hit_count[i], Floats{});
@@ -59,6 +61,8 @@ Receiver receiver_of(const PatchPixels& pixels, const Row& row, const Vector& ve
   receiver.brdf.f0_dielectric = row(pixels.f0_dielectric);
   receiver.brdf.f90_dielectric = row(pixels.f90_dielectric);
   receiver.brdf.alpha = row(pixels.alpha);
+  receiver.brdf.least_lifted = row(pixels.least_lifted);
+  receiver.brdf.lifted_slope = row(pixels.lifted_slope);
   return receiver;
 }
 Receiver receiver_at(const PatchPixels& pixels, std::uint32_t i) {
@@ -163,35 +167,32 @@ vec3 sky_of(const LightEnvironment& environment, Float up) {
                       all_lanes(environment.ground_radiance), up);
 }
 
-void add_to_sum(PatchPixels& pixels, std::uint32_t i, vec3 light) {
-  store_vec3(pixels.sum, i, load_vec3(pixels.sum, i) + light);
+void add_radiance(PatchPixels& pixels, std::uint32_t i, vec3 radiance) {
+  store_vec3(pixels.radiance, i, load_vec3(pixels.radiance, i) + radiance);
 }
 
-// Weights of the direction, distances of the hits, and the light of the sky.
-__attribute__((flatten)) void weigh(PatchPixels& pixels, PixelRun run, const PatchDirection& direction,
-                                    const LightEnvironment& environment) {
-  const vec3 along = all_lanes(direction.direction_ws);
+// Distances of the hits, and the light of the sky where there are none.
+__attribute__((flatten)) void see_sky(PatchPixels& pixels, PixelRun run, vec3 along,
+                                      const LightEnvironment& environment) {
+  const vec3 sky = sky_of(environment, along.y);
   for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
     const Float t = load_float(&pixels.t[i]);
     const Mask hit = in_run(i, run) && t >= 0.0 && t < kNothing;
     const Mask missed = in_run(i, run) && t >= kNothing;
     store(&pixels.distance[i], (load_float(&pixels.distance[i]) + select(hit, t, 0.0)).v);
     store(&pixels.hit_count[i], (load_float(&pixels.hit_count[i]) + select(hit, 1.0, 0.0)).v);
-    const vec3 weight = select(hit || missed, weight_of(receiver_at(pixels, i), along, direction.pdf), vec3(0.0));
-    store_vec3(pixels.weight, i, weight);
-    if (any(missed)) add_to_sum(pixels, i, select(missed, weight * sky_of(environment, along.y), vec3(0.0)));
+    store_vec3(pixels.radiance, i, select(missed, sky, vec3(0.0)));
   }
 }
 
-// Where the rays that weigh something meet the candidate; adds its own light. False if none do.
+// Where rays meet the candidate; adds its own light. False if none do.
 __attribute__((flatten)) bool place_hits(PatchPixels& pixels, PixelRun run, vec3 along, std::uint32_t number,
                                          const HitSurfaces& surfaces, const vec3* flat_normal) {
   bool any_lit = false;
   for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
     const Float t = load_float(&pixels.t[i]);
-    const vec3 weight = load_vec3(pixels.weight, i);
     const Mask of_candidate = equal(load<Ints>(&pixels.candidate[i]), Ints{} + static_cast<std::int32_t>(number));
-    const Mask lit = of_candidate && t >= 0.0 && t < kNothing && weight.x + weight.y + weight.z > 0.0 && surfaces.lit;
+    const Mask lit = in_run(i, run) && of_candidate && t >= 0.0 && t < kNothing && surfaces.lit;
     store(&pixels.is_lit[i], select(lit, 1.0, 0.0).v);
     if (!any(lit)) continue;
     any_lit = true;
@@ -199,7 +200,7 @@ __attribute__((flatten)) bool place_hits(PatchPixels& pixels, PixelRun run, vec3
     store_vec3(
         pixels.hit_normal, i,
         flat_normal ? *flat_normal : normals_of(load_float(&pixels.u[i]), load_float(&pixels.v[i]), along, surfaces));
-    add_to_sum(pixels, i, select(lit, weight * surfaces.emission, vec3(0.0)));
+    add_radiance(pixels, i, select(lit, surfaces.emission, vec3(0.0)));
   }
   return any_lit;
 }
@@ -225,7 +226,18 @@ __attribute__((flatten)) void add_light(PatchPixels& pixels, PixelRun run, vec3 
     const vec3 reflected =
         is_even ? even_light : brdf_times_cosine(brdf, normal_ws, out_ws, at.to_light_ws) * at.irradiance;
     const vec3 arriving = reflected * lighting.light_visibility(light, position_ws, normal_ws, at.to_light_ws);
-    add_to_sum(pixels, i, select(lit, load_vec3(pixels.weight, i) * arriving, vec3(0.0)));
+    add_radiance(pixels, i, select(lit, arriving, vec3(0.0)));
+  }
+}
+
+// Most directions of many pixels meet what is dark.
+__attribute__((flatten)) void weigh(PatchPixels& pixels, PixelRun run, vec3 along, float pdf) {
+  for (std::uint32_t i = run.begin; i < run.end; i += kLanes) {
+    const vec3 radiance = load_vec3(pixels.radiance, i);
+    const Mask bright = radiance.x + radiance.y + radiance.z > 0.0;
+    if (!any(bright)) continue;
+    const vec3 light = weight_of(receiver_at(pixels, i), along, pdf) * radiance;
+    store_vec3(pixels.sum, i, load_vec3(pixels.sum, i) + select(bright, light, vec3(0.0)));
   }
 }
 
@@ -233,7 +245,7 @@ __attribute__((flatten)) void add_light(PatchPixels& pixels, PixelRun run, vec3 
 void gather(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, const Candidate* candidates,
             std::uint32_t candidate_count, const LightEnvironment& environment) {
   const vec3 along = all_lanes(direction.direction_ws);
-  weigh(pixels, run, direction, environment);
+  see_sky(pixels, run, along, environment);
   Lighting lighting(environment);
   for (std::uint32_t number = 0; number < candidate_count; ++number) {
     const HitSurfaces surfaces = all_lanes(candidates[number]);
@@ -244,6 +256,7 @@ void gather(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, 
     for (std::uint32_t i = 0; i < environment.light_count; ++i)
       add_light(pixels, run, -along, brdf, lighting, Lighting::light_of(environment.lights[i]), flat);
   }
+  weigh(pixels, run, along, direction.pdf);
 }
 
 __attribute__((flatten)) void gather_scattered(const PatchPixels& pixels, ScatteredRays& rays, std::uint32_t count,

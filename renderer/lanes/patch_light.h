@@ -26,13 +26,14 @@ struct alignas(64) PatchPixels {
   PixelFloats frame[3][3];        // columns; the third is the shading normal
   PixelFloats out_direction[3];   // in the frame
   PixelFloats geometric_normal[3];
-  PixelFloats diffuse_albedo[3], f0[3], f90, f0_dielectric, f90_dielectric, alpha;  // Brdf in shaders/brdf.glsl
+  PixelFloats diffuse_albedo[3], f0[3], f90, f0_dielectric, f90_dielectric, alpha, least_lifted,
+      lifted_slope;  // Brdf in shaders/brdf.glsl
 
   PixelFloats from[3];   // origins of the rays of the direction at hand
   PixelFloats t, u, v;   // of the nearest candidate that a pixel's ray meets; t is infinite where there is none
   PixelWords candidate;  // which
 
-  PixelFloats weight[3];                               // of its light: f cos(theta) / pdf; 0 where there is no ray
+  PixelFloats radiance[3];                             // that arrives along it, nit
   PixelFloats hit_position[3], hit_normal[3], is_lit;  // 1 where the candidate at hand may be lit, else 0
 
   PixelFloats sum[3];    // of light times weight, over the directions so far

@@ -59,7 +59,7 @@ class HostChunk {
   void keep_hit(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit);
   std::uint32_t candidate_of(std::uint32_t instance, std::uint32_t triangle, const lanes::PatchDirection& direction);
 
-  static constexpr std::uint32_t kLongRun = 8;         // pixels, from which on whole vectors pay
+  static constexpr std::uint32_t kLongRun = 4;         // pixels, from which on whole vectors pay
   static constexpr std::uint32_t kMoreCandidates = 4;  // each costs as much as a vector of scattered rays
 
   const lanes::PatchKernels& kernels_ = lanes::patch_kernels();

@@ -8,7 +8,6 @@ layout(local_size_x = 64) in;
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
-#define WIDENED_LOBE
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/scene_data.glsl"

@@ -6,7 +6,7 @@
 //   that the interface leaves over (Kelemen and Szirmay-Kalos 2001); needs the table of passes/brdf_table.comp.
 // LAMBERT_ONLY: for scenes whose materials are all without a specular lobe, in the frame of the normal.
 // HAS_LOBES: the lobes of glTF's extensions, see shaders/brdf_lobes.glsl.
-// WIDENED_LOBE: the specular lobe may be made wider than the interface is rough, whose base gets what it did.
+// A lobe made wider afterwards (Brdf::alpha) leaves the base what the interface of the material's roughness lets through.
 // LANES: without what samples, see shaders/select.glsl.
 #include "shaders/microfacet.glsl"
 
@@ -18,8 +18,9 @@ struct Brdf {
   float f0_dielectric;    // what the dielectric's interface takes from what lies below it
   float f90_dielectric;
   float alpha;            // GGX, roughness squared
-#ifdef WIDENED_LOBE
-  float interface_alpha;  // by which light gets to the diffuse base
+#ifndef MULTISCATTER
+  float least_lifted;     // of a cosine to the dielectric's interface, and how much more by the cosine: most_reflected()
+  float lifted_slope;
 #endif
 #ifdef MULTISCATTER
   vec3 mean_dielectric;   // cosine-weighted mean of the Fresnel reflectance
@@ -50,8 +51,10 @@ Brdf make_brdf(vec3 base_color, float metallic, float roughness, vec3 f0_dielect
   brdf.f0 = mix(f0, base_color, metallic);
   brdf.f90 = mix(specular_factor, 1.0, metallic);
   brdf.alpha = alpha_from_roughness(roughness);
-#ifdef WIDENED_LOBE
-  brdf.interface_alpha = brdf.alpha;
+#ifndef MULTISCATTER
+  const float interface_roughness = sqrt(brdf.alpha);
+  brdf.least_lifted = max((0.75 - 0.12 * interface_roughness) * interface_roughness - 0.09, 0.0);
+  brdf.lifted_slope = 1.0 + (0.6 * interface_roughness - 1.3) * interface_roughness;
 #endif
 #ifdef MULTISCATTER
   brdf.mean_dielectric = mix(f0, vec3(specular_factor), kSchlickMean);
@@ -116,13 +119,7 @@ float fresnel_weight(Brdf brdf, float cos_difference) {
 // that roughness lifts, fitted from below to the integral of the specular lobe. 1 less it at the more grazing of both
 // directions is reciprocal and keeps the sum of both lobes within 1.
 float most_reflected(Brdf brdf, float cosine) {
-#ifdef WIDENED_LOBE
-  const float roughness = sqrt(brdf.interface_alpha);
-#else
-  const float roughness = sqrt(brdf.alpha);
-#endif
-  const float least = max((0.75 - 0.12 * roughness) * roughness - 0.09, 0.0);
-  const float lifted = least + (1.0 + (0.6 * roughness - 1.3) * roughness) * cosine;
+  const float lifted = brdf.least_lifted + brdf.lifted_slope * cosine;
   return mix(brdf.f0_dielectric, brdf.f90_dielectric, schlick_weight(lifted));
 }
 #endif
