@@ -2,9 +2,9 @@
 #pragma once
 
 #include "renderer/gl/buffer.h"
-#include "renderer/gl/counter.h"
 #include "renderer/gl/variants.h"
 #include "renderer/passes/hit_light.h"
+#include "renderer/passes/onward_rays.h"
 
 namespace lightwell {
 
@@ -34,13 +34,11 @@ class ClearHitsPass {
     gl::Uniform<std::uint32_t> slot_count, patch_count, record_count;
     gl::Uniform<int> goes_on;
   };
-  std::uint32_t step(Variant& variant, const OcclusionRays& rays, const OcclusionMap& occlusion, bool goes_on);
+  void look(Variant& variant, const OcclusionRays& rays, const OcclusionMap& occlusion, bool goes_on);
 
   gl::Variants<Variant> variants_;
-  gl::Buffer rays_, hits_, cleared_;
-  gl::Counter onward_;
-  gl::BufferTexture ray_texels_{"rays through clear surfaces", GL_RGBA32F};
-  gl::BufferTexture hit_texels_{"hits behind clear surfaces", GL_RGBA32UI};
+  OnwardRays onward_;
+  gl::Buffer cleared_;
   gl::BufferTexture cleared_texels_{"clear surfaces before hits", GL_RGBA32F};
 };
 

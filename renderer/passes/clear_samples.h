@@ -1,9 +1,9 @@
 // Rays of samples through clear surfaces.
 #pragma once
 
-#include "renderer/gl/counter.h"
 #include "renderer/gl/variants.h"
 #include "renderer/methods/frame_context.h"
+#include "renderer/passes/onward_rays.h"
 #include "renderer/passes/sample_wave.h"
 
 namespace lightwell {
@@ -33,13 +33,11 @@ class ClearSamplesPass {
     gl::Uniform<std::uint32_t> sample_count, surface, frame_number;
     gl::Uniform<int> goes_on;
   };
-  std::uint32_t step(Variant& variant, const SampleWave& wave, std::uint32_t count, std::uint32_t surface);
+  void look(Variant& variant, const SampleWave& wave, std::uint32_t count, std::uint32_t surface);
 
   gl::Variants<Variant> variants_;
-  gl::Buffer rays_, hits_, tints_;
-  gl::Counter onward_;
-  gl::BufferTexture ray_texels_{"samples through clear surfaces", GL_RGBA32F};
-  gl::BufferTexture hit_texels_{"hits behind clear surfaces", GL_RGBA32UI};
+  OnwardRays onward_;
+  gl::Buffer tints_;
   gl::BufferTexture tint_texels_{"tints of samples", GL_RGBA32F};
 };
 

@@ -13,9 +13,7 @@ constexpr std::uint32_t kMostSurfaces = 6;
 
 SmoothPathsPass::SmoothPathsPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : variants_([&shaders](const gl::Defines& d) { return shaders.compute("passes/smooth_paths.comp", d); }),
-      rays_("smooth paths", 0, buffers),
-      hits_("hits of smooth paths", 0, buffers),
-      onward_("count of smooth paths") {}
+      onward_("smooth paths", buffers) {}
 
 gl::Defines SmoothPathsPass::defines(const DeviceScene& scene, Kind kind) {
   if (!is_needed(scene, kind)) return {};
@@ -27,10 +25,7 @@ gl::Defines SmoothPathsPass::defines(const DeviceScene& scene, Kind kind) {
 void SmoothPathsPass::run(FrameContext& frame, Kind kind, const SampleWave& wave, std::uint32_t count,
                           std::uint32_t pixels, std::uint32_t frame_number) {
   if (!is_needed(frame.scene, kind)) return;
-  rays_.reserve(count * sizeof(Ray));
-  hits_.reserve(std::uint64_t{count} * sizeof(Hit) + 16);  // the last record is read as two wide texels
-  ray_texels_.attach(rays_);
-  hit_texels_.attach(hits_);
+  onward_.reserve(count);
   const gl::Defines defines = gl::joined(gl::joined(frame.scene.texture_defines(), frame.scene.brdf_defines()),
                                          SmoothPathsPass::defines(frame.scene, kind));
   Variant& first = variants_.with(gl::joined(defines, {"FIRST 1"}));
@@ -42,29 +37,19 @@ void SmoothPathsPass::run(FrameContext& frame, Kind kind, const SampleWave& wave
   }
   wave.ray_texels.bind(UNIT_RAYS);
   wave.hit_texels.bind(UNIT_HITS);
-  std::uint32_t onward = step(first, wave, count, 0);
-  for (std::uint32_t surface = 1; onward > 0; ++surface) {
-    frame.tracer.closest_hit(rays_, count, hits_);
-    frame.rays += onward;
-    ray_texels_.bind(UNIT_RAYS);
-    hit_texels_.bind(UNIT_HITS);
-    onward = step(next, wave, count, surface);
-  }
+  frame.rays += onward_.follow(frame.tracer, count,
+                               [&](std::uint32_t surface) { look(surface == 0 ? first : next, wave, count, surface); });
 }
 
-// The number of rays that go on.
-std::uint32_t SmoothPathsPass::step(Variant& variant, const SampleWave& wave, std::uint32_t count,
-                                    std::uint32_t surface) {
-  onward_.begin(BINDING_OUTPUT);
+void SmoothPathsPass::look(Variant& variant, const SampleWave& wave, std::uint32_t count, std::uint32_t surface) {
   wave.hits.bind_storage(BINDING_HITS);
   wave.states.bind_storage(BINDING_SAMPLE_STATES);
   wave.rays.bind_storage(BINDING_RAYS);
-  rays_.bind_storage(BINDING_ARRIVING);
+  onward_.rays().bind_storage(BINDING_ARRIVING);
   variant.sample_count = count;
   variant.surface = surface;
   variant.goes_on = surface < kMostSurfaces ? 1 : 0;
   variant.program->dispatch(count);
-  return onward_.value();
 }
 
 }  // namespace lightwell

@@ -1,9 +1,9 @@
 // Rays of single pixels by way of mirrors and through glass.
 #pragma once
 
-#include "renderer/gl/counter.h"
 #include "renderer/gl/variants.h"
 #include "renderer/methods/frame_context.h"
+#include "renderer/passes/onward_rays.h"
 #include "renderer/passes/sample_wave.h"
 
 namespace lightwell {
@@ -44,13 +44,10 @@ class SmoothPathsPass {
     gl::Uniform<std::uint32_t> sample_count, pixel_count, most_bounces, surface, frame_number;
     gl::Uniform<int> goes_on;
   };
-  std::uint32_t step(Variant& variant, const SampleWave& wave, std::uint32_t count, std::uint32_t surface);
+  void look(Variant& variant, const SampleWave& wave, std::uint32_t count, std::uint32_t surface);
 
   gl::Variants<Variant> variants_;
-  gl::Buffer rays_, hits_;
-  gl::Counter onward_;
-  gl::BufferTexture ray_texels_{"smooth paths", GL_RGBA32F};
-  gl::BufferTexture hit_texels_{"hits of smooth paths", GL_RGBA32UI};
+  OnwardRays onward_;
 };
 
 }  // namespace lightwell
