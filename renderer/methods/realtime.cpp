@@ -19,8 +19,8 @@ constexpr float kReflectionsInMotion = 4.0f;  // frames kept
 
 constexpr float kGreatChange = 0.1f;  // of the light: the cache is filled anew
 
-// After as great a change of light as there is, what was known before counts for a quarter of a frame: 3 % of what is
-// found in the next eight.
+// After half of the light has changed, what was known before counts for a quarter of a frame: what it keeps of the
+// light that is gone is 3 % of the light that is left after the next eight.
 constexpr float kKeptAfterChange = 0.25f;
 
 // What the history counts for, in frames. After motion it grows with the time since then, so that what has changed is
@@ -30,7 +30,7 @@ float frames_kept(const SceneChange& change, bool cache_carries, std::uint32_t s
   float most =
       change.moving ? kInMotion : std::min(kStill, 0.5f * kInMotion + kOfTime * static_cast<float>(since_motion));
   if (cache_carries) most = std::min(most, kOfAge * static_cast<float>(age + 1));
-  return change.light_share > 0.0f ? std::min(most, kKeptAfterChange / change.light_share) : most;
+  return change.light_share > 0.0f ? std::min(most, kKeptAfterChange * left_over_gone(change.light_share)) : most;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr float kForgettingInMotion = 0.09f, kMostForgetting = 3.0f;  // halving
 // Of all halvings over a time and its double, whatever the time: what a young cache holds is too dark, since every
 // bounce builds on what was known of the one before.
 constexpr float kForgettingOfAge = 40.0f;
-constexpr float kKeptAfterChange = 0.02f;  // samples, after as great a change of light as there is
+constexpr float kKeptAfterChange = 0.02f;  // samples, after half of the light has changed
 constexpr std::uint32_t kPatience = 96;    // frames that a cell is kept without samples
 constexpr std::uint32_t kForgetParts = 32;
 constexpr std::uint32_t kLongAgo = 0xffffu;
@@ -80,7 +80,7 @@ void RadianceCache::begin_frame(const Pose& pose, const SceneChange& change) {
   ++frame_number_;
   if (change.light_share > 0.0f) {
     changed_frame_ = frame_number_;
-    kept_after_change_ = kKeptAfterChange / change.light_share;
+    kept_after_change_ = kKeptAfterChange * left_over_gone(change.light_share);
   }
   const float of_age = kForgettingOfAge / static_cast<float>(frame_number_ - changed_frame_ + 1);
   forgetting_ = std::clamp(of_age, change.moving ? kForgettingInMotion : 0.0f, kMostForgetting);

@@ -16,6 +16,13 @@ struct SceneChange {
   float light_share = 0.0f;
 };
 
+/// Of the light of a frame ago, what is left over what is gone, for a share that has changed of (0, 1]: 0 after as
+/// great a change as there is. What is remembered counts in proportion, so that where all lamps go out nothing is left
+/// that an automatic exposure would find.
+inline float left_over_gone(float light_share) {
+  return (1.0f - light_share) / light_share;
+}
+
 class SceneChanges {
  public:
   /// An instance, as far as it is compared.

@@ -17,7 +17,9 @@ const float kSampleUnit = 1.0 / 128.0;
 CellValue unpack_cell_value(uvec4 packed_value) {
   const uint age = (cache_frame - packed_value.w) & 0xffffu;
   const float samples = float(packed_value.w >> 16) * kSampleUnit * exp2(-forgetting * float(age));
-  return CellValue(uintBitsToFloat(packed_value.xyz), age > frames_since_change ? min(samples, kept_after_change) : samples);
+  const bool is_of_before = age > frames_since_change;
+  const vec3 light = is_of_before && kept_after_change == 0.0 ? vec3(0.0) : uintBitsToFloat(packed_value.xyz);
+  return CellValue(light, is_of_before ? min(samples, kept_after_change) : samples);
 }
 
 uvec4 pack_cell_value(CellValue value) {

@@ -10,8 +10,8 @@
 namespace lightwell::testing {
 namespace {
 
-/// A room with two lamps of 3 and of `candela`, and a box whose left side is at `x`.
-Scene furnished_room(float candela, float x) {
+/// A room with two lamps of `first_candela` and of `candela`, and a box whose left side is at `x`.
+Scene furnished_room(float candela, float x, float first_candela = 3.0f) {
   SceneMaker maker;
   const int white = maker.material(lambert(glm::vec3(0.6f)));
   const int blue = maker.material(lambert({0.2f, 0.3f, 0.7f}));
@@ -22,7 +22,7 @@ Scene furnished_room(float candela, float x) {
   maker.quad(low + wide + deep, -deep, high, blue);
   maker.quad(low, deep, high, blue);
   maker.quad(low + wide, -wide, high, blue);
-  maker.point({-0.3f, 0.6f, 0.3f}, 3.0f);
+  maker.point({-0.3f, 0.6f, 0.3f}, first_candela);
   maker.point({0.5f, 0.2f, 0.4f}, candela);
   return maker.take();
 }
@@ -67,6 +67,20 @@ TEST(RealtimeHistory, ASwitchedLampIsThereWithinEightFrames) {
                 100.0 * left[7], 100.0 * left[29]);
     EXPECT_LT(std::abs(left[7]), 0.1);
     EXPECT_LT(std::abs(left[29]), 0.01);
+  }
+}
+
+// An automatic exposure would make a picture of whatever little is left.
+TEST(RealtimeHistory, WhereAllLampsGoOutItIsDarkAtOnce) {
+  const Scene on = furnished_room(6.0f, -0.7f), off = furnished_room(0.0f, -0.7f, 0.0f);
+  for (const bool temporal_antialiasing : {false, true}) {
+    Settings settings = realtime_settings(8);
+    settings.temporal_antialiasing = temporal_antialiasing;
+    Film film(kInRoom, settings, {64, 64});
+    for (int frame = 0; frame < 8; ++frame) film.next(on);
+    for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(mean_of(film.next(off)), 0.0) << frame << temporal_antialiasing;
+    for (int frame = 0; frame < 8; ++frame) film.next(on);
+    EXPECT_GT(mean_of(film.next(on)), 0.1);
   }
 }
 
