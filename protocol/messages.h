@@ -75,6 +75,7 @@ struct SettingsSpec {
   std::optional<bool> temporal_antialiasing;
   std::optional<bool> hand_over;
   std::optional<std::int32_t> target_fps;  // 0 or more
+  std::optional<std::int32_t> warm_up;     // frames, 0 or more
 
   bool operator==(const SettingsSpec&) const = default;
 };

@@ -124,6 +124,7 @@ void read_settings(const Value& value, SettingsSpec& out) {
   object.optional("temporal_antialiasing", settings.temporal_antialiasing, read_boolean);
   object.optional("hand_over", settings.hand_over, read_boolean);
   object.optional("target_fps", settings.target_fps, ReadInteger<std::int32_t>{0, 0x7fffffff});
+  object.optional("warm_up", settings.warm_up, ReadInteger<std::int32_t>{0, 0x7fffffff});
   object.finish();
   if (!value.reading.failed()) out = std::move(settings);
 }

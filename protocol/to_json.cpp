@@ -220,6 +220,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "temporal_antialiasing", settings.temporal_antialiasing);
   give(object, "hand_over", settings.hand_over);
   give(object, "target_fps", settings.target_fps);
+  give(object, "warm_up", settings.warm_up);
   return object;
 }
 

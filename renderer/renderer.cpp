@@ -164,6 +164,7 @@ struct Renderer::State {
   }
 
   CameraBlock bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px);
+  void show(View& view, const Picture& picture, const FrameRequest& request, Frame& frame);
   void read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const;
 
   std::unique_ptr<gl::Context> context;
@@ -190,6 +191,16 @@ CameraBlock Renderer::State::bind_frame(const Scene& scene, const FrameRequest& 
   return block;
 }
 
+void Renderer::State::show(View& view, const Picture& picture, const FrameRequest& request, Frame& frame) {
+  view.display.resize(request.size_px);
+  view.display.measure_exposure(picture, view.exposure_share(request.time_s));
+  if (request.want_display) view.display.run(picture, request.settings);
+  timer.mark("display");
+  read(view, picture, request, frame);
+  timer.mark("read back");
+  frame.exposure_ev = request.settings.exposure_ev.value_or(view.display.measured_exposure_ev());
+}
+
 void Renderer::State::read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const {
   gl::wait_for_device();
   if (request.want_display) {
@@ -202,6 +213,10 @@ void Renderer::State::read(const View& view, const Picture& picture, const Frame
     glGetTextureImage(picture.image.id(), 0, GL_RGB, GL_FLOAT,
                       static_cast<GLsizei>(frame.linear_rgb.size() * sizeof(float)), frame.linear_rgb.data());
   }
+}
+
+int warm_up_frames(const Settings& settings) {
+  return method_of(settings) == Method::kRealtime ? settings.warm_up : 0;
 }
 
 Renderer::Renderer(const RendererOptions& options) : state_(std::make_unique<State>(options)) {
@@ -271,16 +286,10 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
                               ? view.realtime().render(context, scene, request.camera, jitter_px)
                               : view.thesis().render(context);
     const Picture& picture = view.handed_over(made, method, request.hand_over_frames);
-    view.display.resize(request.size_px);
-    view.display.measure_exposure(picture, view.exposure_share(request.time_s));
-    if (request.want_display) view.display.run(picture, request.settings);
-    state_->timer.mark("display");
-    state_->read(view, picture, request, frame);
-    state_->timer.mark("read back");
+    if (!request.is_unseen) state_->show(view, picture, request, frame);
 
     view.accumulated = picture.accumulated;
     frame.accumulated = picture.accumulated;
-    frame.exposure_ev = request.settings.exposure_ev.value_or(view.display.measured_exposure_ev());
     frame.rays = context.rays;
     frame.triangles = state_->device_scene.triangles();
   } catch (const gl::FrameUnwanted&) {

@@ -119,8 +119,15 @@ struct Settings {
   /// set.
   int target_fps = 0;
   bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
+  /// Of `realtime`, 0..64: a picture that is not one of a stream has so many unseen frames before it, whose history it
+  /// begins with. Renderer::render leaves them to its caller, see warm_up_frames().
+  int warm_up = 0;
   bool hand_over = true;  // of a server's sessions: a picture that has long stood still goes over into `reference`
 };
+
+/// How many unseen frames a picture from a standing start is to have before it: Settings::warm_up where the picture is
+/// made by `realtime`, else 0.
+int warm_up_frames(const Settings& settings);
 
 /// The first setting out of range, by its name on the command line; Done if all are good.
 Status check_settings(const Settings& settings, glm::ivec2 size_px);
@@ -138,6 +145,7 @@ struct FrameRequest {
   /// Asked at the end of every stage, but for `realtime`, whose frames are always finished; true: the picture is wanted
   /// no more, and `render` gives kUnwanted. May be empty.
   std::function<bool()> is_unwanted;
+  bool is_unseen = false;    // only to be remembered, for the frames that follow: nothing of it is read or exposed by
   bool want_linear = false;  // Frame::linear_rgb is filled as well: scene-referred, no exposure, no tone curve
   bool want_display = true;  // Frame::display_rgbx is filled: exposed, tone-mapped, sRGB
 };

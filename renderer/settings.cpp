@@ -157,6 +157,7 @@ Status check_settings(const Settings& settings, glm::ivec2 size_px) {
                            check_range("bounces", unlimited ? 0 : settings.bounces, 0, 64),
                            check_range("indirect-size", settings.indirect_size, 8, 4096),
                            check_range("target-fps", settings.target_fps, 0, 240),
+                           check_range("warm-up", settings.warm_up, 0, 64),
                            check_range("shadow-size", settings.shadow_size, 64, 4096),
                            check_range("shadow-filter", settings.shadow_filter, 1, 15),
                            check_patches(settings, size_px),

@@ -43,6 +43,7 @@ class SettingsReader {
     read_value(spec.temporal_antialiasing, settings_.temporal_antialiasing);
     read_value(spec.hand_over, settings_.hand_over);
     read_value(spec.target_fps, settings_.target_fps);
+    read_value(spec.warm_up, settings_.warm_up);
     if (spec.exposure_ev) {
       settings_.exposure_ev.reset();
       if (*spec.exposure_ev) settings_.exposure_ev = static_cast<float>(**spec.exposure_ev);
@@ -148,6 +149,7 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.temporal_antialiasing = settings.temporal_antialiasing;
   spec.hand_over = settings.hand_over;
   spec.target_fps = settings.target_fps;
+  spec.warm_up = settings.warm_up;
   return spec;
 }
 

@@ -32,13 +32,17 @@ struct ServeLimits {
   double session_idle_s = 600.0;                   // a session without viewers or requests ends after this
 };
 
-/// What a session starts with unless told otherwise: two bounces, filtered, small patches; made to be looked at, not to
-/// be the thesis.
+/// What sessions, and pictures and sequences that are asked for, start with unless told otherwise: realtime with two
+/// bounces and four rays a texel and frame; thesis, where it is chosen, is filtered and has small patches. Made to be
+/// looked at, not to be the thesis. Three unseen frames halve the error of a picture that is asked for once.
 inline Settings viewing_settings() {
   Settings settings;
+  settings.method = Method::kRealtime;
+  settings.samples = 64;
   settings.bounces = 2;
   settings.denoise = true;
   settings.patch = 2;
+  settings.warm_up = 3;
   return settings;
 }
 
@@ -49,7 +53,7 @@ struct ServeOptions {
   int port = 8080;                         // 0: any free port
   std::string device;                      // as gl::DeviceChoice::request
   std::string tracer;                      // as RendererOptions::tracer
-  Settings settings = viewing_settings();  // what a session starts with
+  Settings settings = viewing_settings();  // of sessions, pictures and sequences that name none
   int quality = 80;                        // JPEG quality while the picture moves, 1..100; a still one ends at 95
   bool video = true;                       // where this build can encode it
   double reference_after_s = 10.0;         // still for so long, a session's picture is made by reference; 0: never

@@ -165,6 +165,7 @@ export class Panel {
     });
     this.keep(["settings"], ({ settings }) => {
       for (const { row } of [temporal_antialiasing, target_fps]) row.hidden = settings.method !== "realtime";
+      denoise.row.hidden = settings.method !== "thesis";  // realtime always does, reference never
       hand_over.row.hidden = settings.method === "reference";
     });
     return [

@@ -210,7 +210,7 @@ const settings = object({}, {
   exposure_ev: nullable(number(-64, 64)), tone_map: token, seed: u32,
   background: nullable(array(number(0), 3, 3)), shadow_size: at_least_one, shadow_filter: at_least_one,
   denoise: boolean, multiple_scattering: boolean, temporal_antialiasing: boolean,
-  hand_over: boolean, target_fps: index,
+  hand_over: boolean, target_fps: index, warm_up: index,
 });
 
 const edit = (value, pointer) => {

@@ -29,7 +29,7 @@ export class SessionModel {
     this.lights = [];
     this.device = "";
     this.limits = { max_width: 4096, max_height: 4096, max_samples: 4096, max_upload_bytes: Infinity };
-    this.methods = ["thesis"];
+    this.methods = [];
     this.role = "driver";
     this.edits = [];         // all that was asked for since the scene was opened, one for each path
     this.poses = new Map();  // frame id -> pose message

@@ -10,7 +10,7 @@ namespace lightwell {
 namespace {
 
 constexpr double kPanelWidth = 360.0, kPanelHeight = 260.0, kLeft = 62.0, kTop = 34.0, kRight = 14.0, kBottom = 44.0;
-constexpr std::array<const char*, 4> kColors = {"#c2410c", "#1d4ed8", "#15803d", "#7e22ce"};
+constexpr std::array<const char*, 6> kColors = {"#c2410c", "#1d4ed8", "#a16207", "#15803d", "#0e7490", "#7e22ce"};
 
 struct Decades {  // an axis from 10^first to 10^last
   int first = 0, last = 1;
@@ -94,7 +94,7 @@ std::string quality_svg(const std::vector<SceneQuality>& scenes) {
   const std::vector<std::string> series = series_of(scenes);
   const double columns = std::min<double>(2.0, static_cast<double>(scenes.size()));
   const double rows = std::ceil(static_cast<double>(scenes.size()) / 2.0);
-  const double width = columns * kPanelWidth, height = rows * kPanelHeight + 30.0;
+  const double width = columns * kPanelWidth, height = rows * kPanelHeight + 48.0;
   std::string svg = format(
       "<svg xmlns='http://www.w3.org/2000/svg' width='%.0f' height='%.0f' font-family='sans-serif' font-size='11'>\n"
       "<rect width='100%%' height='100%%' fill='white'/>\n",
@@ -111,9 +111,10 @@ std::string quality_svg(const std::vector<SceneQuality>& scenes) {
     }
   }
   for (std::size_t k = 0; k < series.size(); ++k) {
-    const double x = kLeft + 150.0 * static_cast<double>(k);
-    svg += format("<circle cx='%.1f' cy='%.1f' r='4' fill='%s'/>\n", x, height - 14.0, kColors[k % kColors.size()]);
-    svg += label(x + 9.0, height - 10.0, "start", series[k]);
+    const double x = kLeft + 230.0 * static_cast<double>(k % 3);
+    const double y = height - 32.0 + 18.0 * static_cast<double>(k / 3);
+    svg += format("<circle cx='%.1f' cy='%.1f' r='4' fill='%s'/>\n", x, y, kColors[k % kColors.size()]);
+    svg += label(x + 9.0, y + 4.0, "start", series[k]);
   }
   return svg + "</svg>\n";
 }

@@ -82,6 +82,14 @@ Result<Frame> render_picture(Renderer& renderer, RenderView& view, const Scene& 
   return Error{ErrorKind::kInternal, "--spp", "no frame was asked for"};
 }
 
+// Only the first picture starts from nothing: what comes after it has its history.
+Status warm_up(Renderer& renderer, RenderView& view, const Scene& scene, FrameRequest request) {
+  request.is_unseen = true;
+  for (int i = 0; i < warm_up_frames(request.settings); ++i)
+    if (const Result<Frame> frame = renderer.render(scene, request, view); !frame) return frame.error();
+  return Done{};
+}
+
 Result<PlacedCamera> camera_at(const RenderArguments& arguments, const Scene& scene, double time_s) {
   const float aspect_ratio = static_cast<float>(arguments.size_px.x) / static_cast<float>(arguments.size_px.y);
   return place_camera(arguments.camera, pose_at(scene, time_s), aspect_ratio);
@@ -94,6 +102,7 @@ struct Pictures {
   std::unique_ptr<RenderView> view;
   RenderReport& report;
   Progress progress{};
+  bool is_warm = false;
 
   ExitCode render(const std::string& file, double time_s, const std::string& name) {
     FrameRequest request;
@@ -103,6 +112,9 @@ struct Pictures {
     const Result<PlacedCamera> camera = camera_at(arguments, scene, time_s);
     if (!camera) return report_usage(camera.error());
     request.camera = *camera;
+    if (!is_warm)
+      if (const Status warm = warm_up(renderer, *view, scene, request); !warm) return lightwell::report(warm.error());
+    is_warm = true;
     const bool linear = output_format_of(file) == OutputFormat::kExr;
     const Result<Frame> frame = render_picture(renderer, *view, scene, request, arguments.spp, linear, progress, name);
     if (!frame) return lightwell::report(frame.error());

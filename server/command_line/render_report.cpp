@@ -51,6 +51,7 @@ std::map<std::string, std::string> exr_metadata(const RenderArguments& arguments
           {"lightwell:temporal_antialiasing", settings.temporal_antialiasing ? "true" : "false"},
           {"lightwell:photon_guides", settings.photon_guides ? "true" : "false"},
           {"lightwell:target_fps", std::to_string(settings.target_fps)},
+          {"lightwell:warm_up", std::to_string(settings.warm_up)},
           {"lightwell:seed", std::to_string(settings.seed)},
           {"lightwell:accumulated", std::to_string(frame.accumulated)}};
 }

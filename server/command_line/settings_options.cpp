@@ -116,7 +116,8 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
   add_integer(app, "--shadow-size", settings.shadow_size, 64, 4096, "A shadow map's side in pixels");
   add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
              "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));
-  app.add_flag("--denoise,!--no-denoise", settings.denoise, "Smooth the indirect light within surfaces");
+  app.add_flag("--denoise,!--no-denoise", settings.denoise,
+               "thesis: smooth the indirect light within surfaces; realtime always does");
   app.add_flag("--multiple-scattering,!--no-multiple-scattering", settings.multiple_scattering,
                "Keep the light that bounces between the microfacets of rough surfaces");
   app.add_flag("--temporal-antialiasing,!--no-temporal-antialiasing", settings.temporal_antialiasing,
@@ -125,6 +126,9 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
       app, "--target-fps", settings.target_fps, 0, 240,
       "Frames a second of realtime: --samples and --indirect-size are the most, less is taken where it is needed; "
       "0: just these");
+  add_integer(
+      app, "--warm-up", settings.warm_up, 0, 64,
+      "Unseen frames of realtime before a picture that is not one of a stream, which begins with their history");
   add_integer(app, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
               "Start of the random sequence: the same seed gives the same picture");
 }

@@ -5,7 +5,10 @@
 namespace lightwell {
 
 RenderJob::RenderJob(Shot shot, std::uint32_t frames, std::shared_ptr<std::atomic<bool>> gone)
-    : shot_(std::move(shot)), frames_(std::max(frames, 1u)), gone_(std::move(gone)) {}
+    : shot_(std::move(shot)),
+      frames_(std::max(frames, 1u)),
+      gone_(std::move(gone)),
+      unseen_(static_cast<std::uint32_t>(warm_up_frames(shot_.request.settings))) {}
 
 RenderJob::~RenderJob() {
   end(Error{ErrorKind::kDeviceLost, "", "the server stops"});
@@ -18,8 +21,9 @@ SteadyTime RenderJob::due_at(SteadyTime now) {
 Result<Shot> RenderJob::take_shot(SteadyTime) {
   if (gone_ && *gone_) return Error{ErrorKind::kInternal, "", "the client is gone"};
   Shot shot = shot_;
-  const bool last = done_ + 1 == frames_;
-  shot.request.accumulate = done_ > 0;
+  const bool last = done_ + 1 == unseen_ + frames_;
+  shot.request.is_unseen = done_ < unseen_;
+  shot.request.accumulate = done_ > unseen_;
   shot.request.want_display = last && shot_.request.want_display;
   shot.request.want_linear = last && shot_.request.want_linear;
   return shot;
@@ -35,7 +39,7 @@ void RenderJob::shot_done(Result<Frame> frame) {
   }
   if (!frame) return end(std::move(frame));
   add_up(*frame);
-  if (++done_ < frames_) return;
+  if (++done_ < unseen_ + frames_) return;
   frame->stages = std::move(sum_.stages);
   frame->total_ms = sum_.total_ms;
   frame->rays = sum_.rays;

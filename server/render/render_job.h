@@ -11,7 +11,8 @@ namespace lightwell {
 
 class RenderJob : public Subject {
  public:
-  /// Renders `frames` of the very same shot, each adding to the picture; once more if the device is lost meanwhile.
+  /// Renders `frames` of the very same shot, each adding to the picture, after as many unseen ones as its settings ask
+  /// for; once more if the device is lost meanwhile.
   /// `gone` (may be null) calls it off.
   RenderJob(Shot shot, std::uint32_t frames, std::shared_ptr<std::atomic<bool>> gone);
   /// A job let go of before its end gives an error.
@@ -32,7 +33,8 @@ class RenderJob : public Subject {
   Shot shot_;
   const std::uint32_t frames_;
   std::shared_ptr<std::atomic<bool>> gone_;
-  std::uint32_t done_ = 0;
+  const std::uint32_t unseen_;
+  std::uint32_t done_ = 0;  // of both
   bool tried_again_ = false;
   Frame sum_;  // stages, rays and milliseconds so far
   bool ended_ = false;

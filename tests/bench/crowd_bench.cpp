@@ -23,10 +23,11 @@ using std::chrono::steady_clock;
 constexpr int kWatchers = 64, kSessions = 8, kIdle = 1000;
 
 std::string make_session(int port) {
-  const json request{{"scene", "helicopters"},
-                     {"width", 128},
-                     {"height", 128},
-                     {"settings", {{"samples", 8}, {"indirect_size", 32}, {"bounces", 1}, {"denoise", false}}}};
+  const json request{
+      {"scene", "helicopters"},
+      {"width", 128},
+      {"height", 128},
+      {"settings", {{"method", "thesis"}, {"samples", 8}, {"indirect_size", 32}, {"bounces", 1}, {"denoise", false}}}};
   const test::Answer answer = test::ask(port, "POST", "/v1/sessions", request.dump());
   if (answer.status != 201) throw std::runtime_error("no session: " + answer.body);
   return json::parse(answer.body)["id"];

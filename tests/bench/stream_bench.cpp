@@ -16,8 +16,8 @@ constexpr double kLeastFramesPerSecond = 15.0;
 constexpr double kMostAddedMs = 5.0;
 constexpr double kMostStartSeconds = 3.0;
 
-void measure_rate(int port, int patch, double seconds, Report& report) {
-  Viewer viewer(port, true, patch);
+void measure_rate(int port, const std::string& method, int patch, double seconds, Report& report) {
+  Viewer viewer(port, true, patch, method);
   for (int i = 0; i < 20; ++i) viewer.next_frame();
   std::vector<double> added_ms, render_ms, kilobytes;
   const double start_ms = now_ms();
@@ -30,7 +30,7 @@ void measure_rate(int port, int patch, double seconds, Report& report) {
     end_ms = seen.arrived_ms;
   }
   report.section("helicopters 512x512, 32 samples, indirect 128x128, 1 bounce")
-      .push_back({{{"patch", std::to_string(patch)}},
+      .push_back({{{"method", method}, {"patch", std::to_string(patch)}},
                   {{"frames/s", static_cast<double>(added_ms.size()) / (end_ms - start_ms) * 1e3},
                    {"render ms", median(render_ms)},
                    {"added ms", median(added_ms)},
@@ -83,13 +83,14 @@ int run(const std::string& program, double seconds, bool as_json, bool check) {
   const ServerProcess server(program, port);
   server.wait_until_scenes_are_there();
   const double scenes_ms = now_ms();
-  const double first_ms = Viewer(port, true).next_frame().arrived_ms;
+  const double first_ms = Viewer(port, true, 1, "realtime").next_frame().arrived_ms;
   report.machine = {{"threads", std::to_string(std::thread::hardware_concurrency())},
                     {"seconds", std::to_string(seconds)}};
   report.section("start").push_back(
       {{{"process", "cold"}},
        {{"scenes s", (scenes_ms - start_ms) / 1e3}, {"first frame s", (first_ms - start_ms) / 1e3}}});
-  for (const int patch : {2, 1, 4}) measure_rate(port, patch, seconds, report);
+  for (const int patch : {2, 1, 4}) measure_rate(port, "thesis", patch, seconds, report);
+  measure_rate(port, "realtime", 1, seconds, report);
   measure_latency(port, true, 100, report);
   measure_latency(port, false, 100, report);
   as_json ? print_json(report, std::cout) : print_table(report, std::cout);

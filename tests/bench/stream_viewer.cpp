@@ -75,14 +75,19 @@ void ServerProcess::wait_until_scenes_are_there() const {
   }
 }
 
-Viewer::Viewer(int port, bool playing, int patch) {
-  const json request{
-      {"scene", "helicopters"},
-      {"width", 512},
-      {"height", 512},
-      {"playing", playing},
-      {"time_s", 3.0},
-      {"settings", {{"samples", 32}, {"indirect_size", 128}, {"bounces", 1}, {"denoise", false}, {"patch", patch}}}};
+Viewer::Viewer(int port, bool playing, int patch, const std::string& method) {
+  const json request{{"scene", "helicopters"},
+                     {"width", 512},
+                     {"height", 512},
+                     {"playing", playing},
+                     {"time_s", 3.0},
+                     {"settings",
+                      {{"method", method},
+                       {"samples", 32},
+                       {"indirect_size", 128},
+                       {"bounces", 1},
+                       {"denoise", false},
+                       {"patch", patch}}}};
   const test::Answer answer = test::ask(port, "POST", "/v1/sessions", request.dump());
   if (answer.status != 201) throw std::runtime_error("no session: " + answer.body);
   socket_.open(port, "/v1/sessions/" + json::parse(answer.body)["id"].get<std::string>() + "/stream");

@@ -53,8 +53,8 @@ class Viewer {
   };
 
   /// `port`: the server's, or of a line to it.
-  /// `patch`: side of the thesis' patches; a server's sessions begin with 2.
-  Viewer(int port, bool playing, int patch = 2);
+  /// `patch`: side of the thesis' patches; `method`: its name in the API.
+  Viewer(int port, bool playing, int patch = 2, const std::string& method = "thesis");
 
   /// None if none comes in time.
   std::optional<Seen> frame_within(std::chrono::milliseconds limit);

@@ -26,6 +26,7 @@ test("bounces without a limit come and go with the method", async () => {
   assert.equal(await bounces(), "No limit");
   await fixture.pictures_around(() => fixture.setting("Method").selectOption("thesis"));
   assert.equal(await bounces(), "8");
+  await fixture.pictures_around(() => fixture.setting("Method").selectOption("realtime"));
   await fixture.pictures_around(() => fixture.setting("Bounces").fill("1"));
   assert.deepEqual(viewer.errors, []);
 });
@@ -38,6 +39,6 @@ test("the final picture is refined by reference, and a drag ends that at once", 
   await viewer.until("the method to be told", method_shown, (name) => name === "Reference");
   await fixture.keep("desktop-reference");
   await fixture.pictures_around(() => viewer.drag({ x: 500, y: 450 }, { x: 560, y: 460 }));
-  await viewer.until("the method to be told", method_shown, (name) => name === "Thesis");
+  await viewer.until("the method to be told", method_shown, (name) => name === "Realtime");
   assert.deepEqual(viewer.errors, []);
 });

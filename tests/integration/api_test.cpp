@@ -123,7 +123,7 @@ TEST_F(ApiTest, AHostileUploadLeavesNoTrace) {
 }
 
 TEST_F(ApiTest, RendersInThreeFormats) {
-  const json request{{"scene", "cornell"}, {"width", 32}, {"height", 16}};
+  const json request{{"scene", "cornell"}, {"width", 32}, {"height", 16}, {"settings", {{"warm_up", 0}}}};
   const Answer png = ask("POST", "/v1/render", request);
   ASSERT_EQ(png.status, 200) << png.body;
   EXPECT_EQ(png.field("Content-Type"), "image/png");
@@ -144,13 +144,51 @@ TEST_F(ApiTest, RendersInThreeFormats) {
 TEST_F(ApiTest, AccumulatesAsManyFramesAsAsked) {
   const int before = studio_->pictures;
   const Answer answer =
-      ask("POST", "/v1/render", {{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"spp_frames", 5}});
+      ask("POST", "/v1/render",
+          {{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"spp_frames", 5}, {"settings", {{"warm_up", 0}}}});
   EXPECT_EQ(answer.status, 200);
   EXPECT_EQ(answer.field("X-Lightwell-Rays"), "320");
   EXPECT_EQ(studio_->pictures - before, 5);
   const std::vector<FrameRequest> requests = studio_->requests();
   EXPECT_FALSE(requests[requests.size() - 5].accumulate);
   EXPECT_TRUE(requests.back().accumulate);
+}
+
+TEST_F(ApiTest, UnseenFramesComeBeforeAPictureOfRealtime) {
+  const auto requests_of = [this](const json& settings) {
+    const std::size_t before = studio_->requests().size();
+    const json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"spp_frames", 2}, {"settings", settings}};
+    EXPECT_EQ(ask("POST", "/v1/render", request).status, 200);
+    std::vector<FrameRequest> requests = studio_->requests();
+    requests.erase(requests.begin(), requests.begin() + static_cast<std::ptrdiff_t>(before));
+    return requests;
+  };
+  const std::vector<FrameRequest> requests = requests_of({{"warm_up", 2}});
+  ASSERT_EQ(requests.size(), 4u);
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    EXPECT_EQ(requests[i].is_unseen, i < 2) << i;
+    EXPECT_EQ(requests[i].accumulate, i == 3) << i;
+    EXPECT_EQ(requests[i].want_display, i == 3) << i;
+  }
+  EXPECT_EQ(requests_of(json::object()).size(), 5u) << "three by default";
+  EXPECT_EQ(requests_of({{"warm_up", 2}, {"method", "thesis"}}).size(), 2u);
+  EXPECT_EQ(requests_of({{"warm_up", 2}, {"view", "normal"}}).size(), 2u) << "is not made by realtime";
+}
+
+TEST_F(ApiTest, APictureHasTheSettingsThatSessionsBeginWithUnlessItNamesOthers) {
+  const auto settings_of = [this](const json& settings) {
+    const json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"settings", settings}};
+    EXPECT_EQ(ask("POST", "/v1/render", request).status, 200);
+    return studio_->requests().back().settings;
+  };
+  const Settings left_out = settings_of(json::object());
+  EXPECT_EQ(left_out.method, Method::kRealtime);
+  EXPECT_EQ(left_out.bounces, 2);
+  const Settings named = settings_of({{"method", "thesis"}});
+  EXPECT_EQ(named.method, Method::kThesis);
+  EXPECT_EQ(named.bounces, 2);
+  EXPECT_EQ(named.patch, 2);
+  EXPECT_TRUE(named.denoise);
 }
 
 class FewSamplesTest : public ServerTest {
@@ -225,7 +263,7 @@ TEST_F(ApiTest, KeepsSessions) {
   EXPECT_EQ(created.field("Location"), path);
   EXPECT_EQ(session["revision"], 1);
   EXPECT_EQ(session["viewers"], 0);
-  EXPECT_EQ(session["settings"]["method"], "thesis");
+  EXPECT_EQ(session["settings"]["method"], "realtime");
 
   const Answer changed = ask("PATCH", path, {{"settings", {{"samples", 7}}}, {"time_s", 2.5}, {"width", 64}});
   ASSERT_EQ(changed.status, 200) << changed.body;

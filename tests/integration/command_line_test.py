@@ -85,6 +85,12 @@ class HelpTest(CommandLineTest):
                                 ("figures", "--only")]:
             self.assertIn(option, self.run_lightwell(command, "--help").stdout)
 
+    def test_serve_begins_with_realtime_and_render_with_thesis(self):
+        for command, method, samples in [("serve", "realtime", 64), ("render", "thesis", 32)]:
+            words = self.run_lightwell(command, "--help").stdout
+            self.assertIn(f"={method}\n", words)
+            self.assertIn(f"--samples N={samples} ", words)
+
     def test_wrong_commands(self):
         for arguments in [[], ["paint"], ["--nonsense"], ["devices", "extra"], ["bench"], ["bench", "none"], ["serve", "a.glb", "b.glb"]]:
             self.run_lightwell(*arguments, code=WRONG_USAGE)

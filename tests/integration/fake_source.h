@@ -55,7 +55,7 @@ class FakeSource : public PictureSource {
  public:
   explicit FakeSource(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) { ++studio_->sources; }
 
-  SourceFacts facts() override { return {"a fake device", "a test", "none", {"thesis"}}; }
+  SourceFacts facts() override { return {"a fake device", "a test", "none", {"thesis", "realtime"}}; }
 
   std::vector<glm::ivec2> sizes_to_warm_up() override { return studio_->sizes_to_warm_up; }
 

@@ -14,7 +14,8 @@ TEST_F(MetricsTest, CountsWhatHappens) {
   StreamClient client(server_.port(), make_session());
   client.hello();
   ASSERT_TRUE(client.frame_where([](const protocol::FrameHeader& frame) { return frame.is_final; }));
-  EXPECT_EQ(ask("POST", "/v1/render", {{"scene", "cornell"}, {"width", 8}, {"height", 8}}).status, 200);
+  const json request{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"settings", {{"warm_up", 0}}}};
+  EXPECT_EQ(ask("POST", "/v1/render", request).status, 200);
   ask("GET", "/v1/scenes/nothing");
   ask("GET", "/nothing");
   const Answer answer = ask("GET", "/metrics");

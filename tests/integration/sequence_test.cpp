@@ -11,7 +11,8 @@
 namespace lightwell::test {
 namespace {
 
-const json kSmall{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 4}};
+// Without unseen frames, so that as many are rendered as are asked for.
+const json kSmall{{"scene", "cornell"}, {"width", 8}, {"height", 8}, {"last_frame", 4}, {"settings", {{"warm_up", 0}}}};
 
 class SequenceTest : public testing::Test {
  protected:
@@ -73,7 +74,7 @@ TEST_F(SequenceTest, IsRenderedAndFetchedFrameByFrameAndAsAZip) {
   const json done = server.until_done(id);
   ASSERT_EQ(done["state"], "done") << done;
   EXPECT_EQ(done["frames_done"], 5);
-  EXPECT_EQ(done["request"]["settings"]["samples"], Settings().samples);
+  EXPECT_EQ(done["request"]["settings"]["samples"], viewing_settings().samples);
   const Answer frame = server.ask("GET", path + "/frames/4");
   ASSERT_EQ(frame.status, 200) << frame.body;
   EXPECT_EQ(frame.field("Content-Type"), "image/png");
@@ -220,6 +221,20 @@ TEST_F(SequenceTest, FollowsKeyframesAndTheCamera) {
   const std::vector<float> expected = {0.0f, 0.75f, 1.5f, 2.25f, 3.0f};
   ASSERT_GE(eyes.size(), 5u);
   EXPECT_EQ(std::vector<float>(eyes.end() - 5, eyes.end()), expected);
+}
+
+TEST_F(SequenceTest, HasTheSettingsThatSessionsBeginWithUnlessItNamesOthers) {
+  const Running server = start();
+  json named = kSmall;
+  named["settings"]["method"] = "thesis";
+  for (const auto& [request, method] : {std::pair(kSmall, Method::kRealtime), {named, Method::kThesis}}) {
+    const std::string id = server.submit(request);
+    EXPECT_EQ(server.until_done(id)["state"], "done");
+    EXPECT_EQ(server.studio->requests().back().settings.method, method);
+  }
+  json in_words = kSmall;
+  in_words["settings"]["method"] = "realtime";
+  EXPECT_EQ(server.submit(in_words, 200), server.submit(kSmall, 200)) << "the very same sequence";
 }
 
 TEST_F(SequenceTest, HasAllViewsAsLayersOrAsFiles) {

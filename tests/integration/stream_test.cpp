@@ -20,7 +20,7 @@ TEST_F(StreamTest, WelcomesAndSendsFrames) {
   EXPECT_EQ(welcome["role"], "driver");
   EXPECT_EQ(welcome["scene"], "cornell");
   EXPECT_EQ(welcome["device"], "a fake device");
-  EXPECT_EQ(welcome["methods"], json({"thesis"}));
+  EXPECT_EQ(welcome["methods"], json({"thesis", "realtime"}));
   EXPECT_EQ(welcome["limits"]["max_upload_bytes"], 4 << 20);
   EXPECT_FALSE(welcome["lights"].empty());
   EXPECT_FALSE(welcome["scenes"].empty());
