@@ -6,6 +6,7 @@
 
 #include "server/operations/background_task.h"
 #include "server/operations/log.h"
+#include "server/render/metered_source.h"
 #include "server/service_state.h"
 #include "server/video/video_encoder.h"
 
@@ -59,7 +60,7 @@ Service::State::State(const ServeOptions& serve_options, MakePictureSource make_
                      if (session_keeper) session_keeper->changed(std::move(session));
                    }},
       render_loop(
-          std::move(make_source), [this] { return warm_up_shot(); },
+          with_memory_meter(std::move(make_source), metrics), [this] { return warm_up_shot(); },
           [this](Share share, const Result<Frame>& frame, double seconds) {
             if (!frame && frame.error().kind == ErrorKind::kDeviceLost) metrics.device_rebuilt();
             if (!frame) return metrics.frame_failed(frame.error().kind);

@@ -20,6 +20,7 @@ Buffer::Buffer(std::string label, std::uint64_t size_bytes, BufferUse use)
     glDeleteBuffers(1, &id_);
     throw std::runtime_error("the device refused a buffer of " + std::to_string(size_bytes_) + " bytes for " + label_);
   }
+  memory_ = Allocation(size_bytes_);
   glObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
   if (use == BufferUse::kHostVisible) {
     host_ = static_cast<std::byte*>(glMapNamedBufferRange(id_, 0, static_cast<GLsizeiptr>(size_bytes_), map_flags));
@@ -43,6 +44,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   use_ = other.use_;
   host_ = std::exchange(other.host_, nullptr);
   label_ = std::move(other.label_);
+  memory_ = std::move(other.memory_);
   return *this;
 }
 
@@ -50,6 +52,7 @@ void Buffer::release() {
   if (id_ != 0) glDeleteBuffers(1, &id_);
   id_ = 0;
   host_ = nullptr;
+  memory_ = {};
 }
 
 void Buffer::upload(std::span<const std::byte> bytes, std::uint64_t offset_bytes) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "renderer/gl/gl.h"
+#include "renderer/gl/memory.h"
 
 namespace lightwell::gl {
 
@@ -58,6 +59,7 @@ class Buffer {
   BufferUse use_ = BufferUse::kDevice;
   std::byte* host_ = nullptr;
   std::string label_;
+  Allocation memory_;
 };
 
 /// Waits until the device has done all commands issued so far and host-visible buffers show their results.

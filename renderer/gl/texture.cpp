@@ -8,6 +8,26 @@
 #include "renderer/gl/buffer.h"
 
 namespace lightwell::gl {
+namespace {
+
+/// Of a texture that has storage, as its format says.
+std::uint64_t bytes_of(GLuint id, const TextureOptions& options) {
+  std::uint64_t bits = 0;
+  const auto value = [id](int level, GLenum name) {
+    GLint result = 0;
+    glGetTextureLevelParameteriv(id, level, name, &result);
+    return static_cast<std::uint64_t>(result);
+  };
+  for (const GLenum channel : {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE,
+                               GL_TEXTURE_DEPTH_SIZE, GL_TEXTURE_STENCIL_SIZE, GL_TEXTURE_SHARED_SIZE})
+    bits += value(0, channel);
+  std::uint64_t pixels = 0;
+  for (int level = 0; level < options.levels; ++level)
+    pixels += value(level, GL_TEXTURE_WIDTH) * value(level, GL_TEXTURE_HEIGHT);
+  return pixels * static_cast<std::uint64_t>(options.layers) * bits / 8;
+}
+
+}  // namespace
 
 Texture::Texture(std::string label, GLenum format, glm::ivec2 size_px, const TextureOptions& options)
     : format_(format), size_px_(size_px), layers_(options.layers), array_(options.target == GL_TEXTURE_2D_ARRAY) {
@@ -26,6 +46,7 @@ Texture::Texture(std::string label, GLenum format, glm::ivec2 size_px, const Tex
     throw std::runtime_error("the device refused a texture of " + std::to_string(size_px.x) + "x" +
                              std::to_string(size_px.y) + "x" + std::to_string(options.layers) + " for " + label);
   }
+  memory_ = Allocation(bytes_of(id_, options));
   glObjectLabel(GL_TEXTURE, id_, -1, label.c_str());
   glTextureParameteri(id_, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(options.min_filter));
   glTextureParameteri(id_, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(options.mag_filter));
@@ -49,6 +70,7 @@ Texture& Texture::operator=(Texture&& other) noexcept {
   size_px_ = std::exchange(other.size_px_, glm::ivec2(0));
   layers_ = other.layers_;
   array_ = other.array_;
+  memory_ = std::move(other.memory_);
   return *this;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "renderer/gl/gl.h"
+#include "renderer/gl/memory.h"
 
 namespace lightwell::gl {
 
@@ -46,6 +47,7 @@ class Texture {
   glm::ivec2 size_px_{0};
   int layers_ = 1;
   bool array_ = false;
+  Allocation memory_;
 };
 
 class Buffer;

@@ -119,6 +119,8 @@ struct Metrics::State {
   Gauge& resident = gauges("process_resident_memory_bytes", "Resident memory of the process").Add({});
   Gauge& device_total =
       gauges("lightwell_device_memory_bytes", "Memory of the graphics device; 0: it does not tell").Add({});
+  Gauge& device_own =
+      gauges("lightwell_device_memory_own_bytes", "Bytes in this server's textures and buffers on the device").Add({});
   Gauge& device_used = gauges("lightwell_device_memory_used_bytes", "Of it, what is in use, by everyone").Add({});
 };
 
@@ -176,9 +178,10 @@ void Metrics::bytes_received(std::uint64_t bytes) {
   state_->received.Increment(static_cast<double>(bytes));
 }
 
-void Metrics::device_memory(const DeviceMemory& memory) {
+void Metrics::device_memory(const gl::DeviceMemory& memory) {
   state_->device_total.Set(static_cast<double>(memory.total_bytes));
   state_->device_used.Set(static_cast<double>(memory.used_bytes));
+  state_->device_own.Set(static_cast<double>(memory.own_bytes));
 }
 
 void Metrics::device_rebuilt() {

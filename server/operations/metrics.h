@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "renderer/gl/memory.h"
 #include "renderer/renderer.h"
 
 namespace lightwell {
@@ -23,10 +24,6 @@ struct Levels {
   std::optional<std::uint64_t> frames_waiting = 0;
   std::uint64_t uploaded_scenes = 0, uploaded_bytes = 0;
   bool ready = false;
-};
-
-struct DeviceMemory {
-  std::uint64_t total_bytes = 0, used_bytes = 0;
 };
 
 /// What a stream's picture was made as; 0 bytes: not as that.
@@ -52,7 +49,7 @@ class Metrics {
   /// `route` is the template of the path ("/v1/scenes/{name}"), or "none" if there is no such path.
   void request_answered(std::string_view method, std::string_view route, int status, double seconds);
   void bytes_received(std::uint64_t bytes);
-  void device_memory(const DeviceMemory& memory);
+  void device_memory(const gl::DeviceMemory& memory);
   void device_rebuilt();
   /// Work that is done again and again has failed this time.
   void background_task_failed(std::string_view task);

@@ -36,6 +36,8 @@ class RendererSource : public PictureSource {
     return frame;
   }
 
+  gl::DeviceMemory memory() override { return gl::device_memory(); }
+
   /// llvmpipe compiles a shader anew for every texture whose width or height is a power of two where it was none
   /// before, or the other way round: seconds and megabytes, in the middle of a stream, when a window changes its size
   /// or a busy machine gives up resolution. Here are pictures, indirect maps and patches with such sides and without.
@@ -68,6 +70,7 @@ class FaultySource : public PictureSource {
 
   SourceFacts facts() override { return source_->facts(); }
   std::unique_ptr<RenderView> make_view() override { return source_->make_view(); }
+  gl::DeviceMemory memory() override { return source_->memory(); }
   Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view) override {
     if ((*frames_left_)-- == 0) return Error{ErrorKind::kDeviceLost, "", "LIGHTWELL_FAULT says so"};
     return source_->render(scene, request, view);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/gl/memory.h"
 #include "renderer/renderer.h"
 
 namespace lightwell {
@@ -25,6 +26,7 @@ class PictureSource {
   virtual SourceFacts facts() = 0;
   virtual std::unique_ptr<RenderView> make_view() = 0;
   virtual Result<Frame> render(const Scene& scene, const FrameRequest& request, RenderView& view) = 0;
+  virtual gl::DeviceMemory memory() { return {}; }
   /// Pictures of these sizes, once made, spare later ones of any size that the device compiles shaders for them. The
   /// most wanted first.
   virtual std::vector<glm::ivec2> sizes_to_warm_up() { return {}; }

@@ -57,6 +57,8 @@ class FakeSource : public PictureSource {
 
   SourceFacts facts() override { return {"a fake device", "a test", "none", {"thesis", "realtime"}}; }
 
+  gl::DeviceMemory memory() override { return {3000, 2000, 1000}; }
+
   std::vector<glm::ivec2> sizes_to_warm_up() override { return studio_->sizes_to_warm_up; }
 
   std::unique_ptr<RenderView> make_view() override { return std::make_unique<View>(studio_); }

@@ -21,11 +21,13 @@ TEST_F(MetricsTest, CountsWhatHappens) {
   const Answer answer = ask("GET", "/metrics");
   ASSERT_EQ(answer.status, 200);
   EXPECT_EQ(answer.field("Content-Type"), "text/plain; version=0.0.4; charset=utf-8");
-  for (const char* line : {"lightwell_frames_total{for=\"request\"} 1\n", "lightwell_frames_total{for=\"stream\"} 64\n",
-                           "lightwell_sessions 1\n", "lightwell_viewers 1\n", "lightwell_ready 1\n",
-                           "lightwell_stage_seconds_count{stage=\"trace\"} 65\n",
-                           "lightwell_requests_total{method=\"GET\",route=\"/v1/scenes/{name}\",status=\"404\"} 1\n",
-                           "lightwell_requests_total{method=\"none\",route=\"none\",status=\"404\"} 1\n"})
+  for (const char* line :
+       {"lightwell_frames_total{for=\"request\"} 1\n", "lightwell_frames_total{for=\"stream\"} 64\n",
+        "lightwell_device_memory_bytes 3000\n", "lightwell_device_memory_used_bytes 2000\n",
+        "lightwell_device_memory_own_bytes 1000\n", "lightwell_sessions 1\n", "lightwell_viewers 1\n",
+        "lightwell_ready 1\n", "lightwell_stage_seconds_count{stage=\"trace\"} 65\n",
+        "lightwell_requests_total{method=\"GET\",route=\"/v1/scenes/{name}\",status=\"404\"} 1\n",
+        "lightwell_requests_total{method=\"none\",route=\"none\",status=\"404\"} 1\n"})
     EXPECT_NE(answer.body.find(line), std::string::npos) << line << answer.body;
 }
 
