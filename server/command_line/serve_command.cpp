@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 #include <limits>
-#include <map>
 
 #include "server/command_line/add_option.h"
 #include "server/command_line/environment_options.h"
@@ -94,6 +93,21 @@ void add_access_options(CLI::App& app, ServeOptions& options) {
   add_parsed(app, "--request-burst", access.request_burst, number, "N", "Requests of one client at once", "400");
 }
 
+/// An option that takes one of these names. `standard` is what it is without.
+template <class Value>
+void add_one_of(CLI::App& app, const std::string& name, Value& target,
+                const std::vector<std::pair<std::string, Value>>& values, const std::string& standard,
+                const std::string& help) {
+  std::string names;
+  for (const auto& [known, value] : values) names += (names.empty() ? "" : "|") + known;
+  const auto parse = [values, names](const std::string& text) -> Result<Value> {
+    for (const auto& [known, value] : values)
+      if (text == known) return value;
+    return invalid_input("", "expected one of " + names + ", not \"" + text + "\"");
+  };
+  add_parsed(app, name, target, parse, names, help, standard);
+}
+
 }  // namespace
 
 void add_serve_options(CLI::App& app, ServeOptions& options) {
@@ -113,27 +127,26 @@ void add_serve_options(CLI::App& app, ServeOptions& options) {
       "A session that stands still for so long goes over into the method reference; 0: never", "10");
   add_device_options(app, options.device, options.tracer);
   add_settings_options(app, options.settings);
+  app.option_defaults()->group("Operations");
   add_parsed(
       app, "--drain-delay", options.drain_delay_s,
       [](const std::string& text) { return parse_number(text, 0.0, 3600.0); }, "SECONDS",
       "Told to stop, serve on for so long while not ready, so that a balancer notices", "0");
   options.data_dir = default_data_dir();
-  app.add_option("--data", options.data_dir, "The folder that sequences are kept in; empty: there are none")
+  app.add_option(
+         "--data", options.data_dir,
+         "The folder that sequences and sessions are kept in; empty: no sequences, and sessions end with the server")
       ->capture_default_str()
       ->type_name("FOLDER");
-  const std::map<std::string, LogFormat> formats{{"text", LogFormat::kText}, {"json", LogFormat::kJson}};
-  app.add_option("--log-format", options.log_format, "How standard error is written")
-      ->transform(CLI::CheckedTransformer(formats))
-      ->type_name("text|json")
-      ->default_str("text");
-  const std::map<std::string, LogLevel> levels{{"debug", LogLevel::kDebug},
-                                               {"info", LogLevel::kInfo},
-                                               {"warning", LogLevel::kWarning},
-                                               {"error", LogLevel::kError}};
-  app.add_option("--log-level", options.log_level, "The least that is written; debug: every request")
-      ->transform(CLI::CheckedTransformer(levels))
-      ->type_name("debug|info|warning|error")
-      ->default_str("info");
+  add_one_of<LogFormat>(app, "--log-format", options.log_format,
+                        {{"text", LogFormat::kText}, {"json", LogFormat::kJson}}, "text",
+                        "How standard error is written");
+  add_one_of<LogLevel>(app, "--log-level", options.log_level,
+                       {{"debug", LogLevel::kDebug},
+                        {"info", LogLevel::kInfo},
+                        {"warning", LogLevel::kWarning},
+                        {"error", LogLevel::kError}},
+                       "info", "The least that is written; debug: every request");
   app.option_defaults()->group("Light");
   add_environment_options(app, options.environment);
   app.option_defaults()->group("Access");

@@ -22,12 +22,10 @@ using std::chrono::steady_clock;
 
 constexpr int kWatchers = 64, kSessions = 8, kIdle = 1000;
 
-std::string make_session(int port) {
-  const json request{
-      {"scene", "helicopters"},
-      {"width", 128},
-      {"height", 128},
-      {"settings", {{"method", "thesis"}, {"samples", 8}, {"indirect_size", 32}, {"bounces", 1}, {"denoise", false}}}};
+std::string make_session(int port, int samples = 8, int indirect_size = 32) {
+  const json settings{
+      {"method", "thesis"}, {"samples", samples}, {"indirect_size", indirect_size}, {"bounces", 1}, {"denoise", false}};
+  const json request{{"scene", "helicopters"}, {"width", 128}, {"height", 128}, {"settings", settings}};
   const test::Answer answer = test::ask(port, "POST", "/v1/sessions", request.dump());
   if (answer.status != 201) throw std::runtime_error("no session: " + answer.body);
   return json::parse(answer.body)["id"];
@@ -141,6 +139,30 @@ void measure_sessions(int port, double seconds, Report& report) {
   for (const std::string& session : sessions) test::ask(port, "DELETE", "/v1/sessions/" + session);
 }
 
+/// A session of small pictures beside one whose pictures take many times as long: half of the time is its share.
+void measure_light_beside_heavy(int port, double seconds, Report& report) {
+  const std::string light = make_session(port), heavy = make_session(port, 128, 128);
+  const auto alone_rate = [&](const std::string& session) {
+    Viewers alone;
+    alone.push_back(std::make_unique<Viewer>(port, session, protocol::Role::kDriver));
+    return rates_of(alone, seconds).front();
+  };
+  const double light_alone = alone_rate(light), heavy_alone = alone_rate(heavy);
+  Viewers both;
+  for (const std::string& session : {light, heavy})
+    both.push_back(std::make_unique<Viewer>(port, session, protocol::Role::kDriver));
+  const std::vector<double> rates = rates_of(both, seconds);
+  report.section("a light session beside a heavy one")
+      .push_back({{{"size", "128x128"}},
+                  {{"light alone frames/s", light_alone},
+                   {"heavy alone frames/s", heavy_alone},
+                   {"light beside it frames/s", rates[0]},
+                   {"light beside/alone", rates[0] / light_alone},
+                   {"heavy beside/alone", rates[1] / heavy_alone}}});
+  both.clear();
+  for (const std::string& session : {light, heavy}) test::ask(port, "DELETE", "/v1/sessions/" + session);
+}
+
 void measure_idle(int port, Report& report) {
   std::vector<test::Line> lines;
   for (int i = 0; i < kIdle; ++i) {
@@ -171,6 +193,7 @@ int run(double seconds, bool as_json) {
   while (test::ask(server.port(), "GET", "/v1/scenes").status != 200)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   measure_sessions(server.port(), seconds, report);
+  measure_light_beside_heavy(server.port(), seconds, report);
   measure_watchers(server.port(), seconds, report);
   measure_idle(server.port(), report);
   as_json ? print_json(report, std::cout) : print_table(report, std::cout);
