@@ -1,5 +1,6 @@
-// A server is killed while one viewer drives its session and another watches: both come back by themselves, at another
-// server over the same folder, to the session as it was. Between them stands the balancer as it is deployed.
+// A server is killed, and another told to stop, while one viewer drives its session and another watches: both come back by
+// themselves, at another server over the same folder, to the session as it was. Between them stands the balancer as it is
+// deployed.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { once } from "node:events";
@@ -20,7 +21,7 @@ async function start_balancer(folder, ports) {
   for (let gpu = 0; gpu < 3; ++gpu) {
     const server = `  server gpu${gpu} 127.0.0.1:900${gpu + 1}\n`;
     assert.ok(text.includes(server));
-    text = text.replace(server, ports[gpu] ? server.replace(`900${gpu + 1}`, ports[gpu]) : "");
+    text = text.replace(server, server.replace(`900${gpu + 1}`, ports[gpu]));
   }
   const file = path.join(folder, "haproxy.cfg");
   writeFileSync(file, text);
@@ -32,9 +33,9 @@ async function start_balancer(folder, ports) {
 class Cluster extends Fixture {
   async start() {
     this.folder = mkdtempSync(path.join(os.tmpdir(), "lightwell-"));
-    const start_one = () =>
-      start_server(program, [...this.options, "--data", path.join(this.folder, "data"), "--max-request-rate", "0"]);
-    this.servers = await Promise.all([start_one(), start_one()]);
+    const options = [...this.options, "--data", path.join(this.folder, "data"), "--max-request-rate", "0"];
+    const start_one = () => start_server(program, [...options, "--drain-delay", "3"]);
+    this.servers = await Promise.all([start_one(), start_one(), start_one()]);
     this.line = await start_balancer(this.folder, this.servers.map(({ port }) => port));
     this.server = { stop: () => Promise.all(this.servers.map((server) => server.stop())) };
     this.browser = await open_browser();
@@ -114,4 +115,16 @@ test("who drove drives on, and the watcher sees it", async () => {
   assert.ok(difference(earlier, later) > 1);
   await watcher.until("the driver's new picture", () => watcher.picture(), (picture) => difference(watched, picture) > 1);
   assert.ok(difference(await settled(driver), await settled(watcher)) < 1);
+});
+
+test("both go on at the third when the second is told to stop", async () => {
+  const { session } = await driver.stage();
+  const before = await settled(driver);
+  const [home] = await cluster.homes_of(session);
+  const shown = (await driver.stage()).shown, watched = (await watcher.stage()).shown;
+  await home.stop();
+  await Promise.all([is_back(driver, session, shown), is_back(watcher, session, watched)]);
+  assert.ok(difference(before, await settled(driver)) < 1, "the camera is where it was");
+  const [earlier, later] = await cluster.pictures_around(() => driver.drag({ x: 420, y: 430 }, { x: 640, y: 480 }));
+  assert.ok(difference(earlier, later) > 1, "who drove drives on");
 });
