@@ -32,26 +32,30 @@ class HierarchyWalk {
   // try_leaf(leaf, number, far) gives how far is still to be looked.
   template <class TryLeaf>
   void follow(float far, const TryLeaf& try_leaf) {
-    Pending next{0.0f, hierarchy_.root, false};
+    Pending next = hierarchy_.root;
     for (;;) {
-      if (next.is_leaf)
-        far = try_leaf(hierarchy_.leaves[next.child], next.child, far);
+      const std::uint32_t child = static_cast<std::uint32_t>(next), place = child & ~kWideLeafBit;
+      if ((child & kWideLeafBit) != 0)
+        far = try_leaf(hierarchy_.leaves[place], place, far);
       else
-        push_children(hierarchy_.nodes[next.child], far);
+        push_children(hierarchy_.nodes[place], far);
       do {
         if (size_ == 0) return;
         next = stack_[--size_];
-      } while (next.near > far);
+      } while (next >> 32 > bits_of(far));
     }
   }
 
  private:
-  // A child that may be met, and from where on.
-  struct Pending {
-    float near;
-    std::uint32_t child;
-    bool is_leaf;
-  };
+  // A child that may be met, and from where on: the bits of a distance, which is not negative, before WideNode::child.
+  // Nearer ones are less.
+  using Pending = std::uint64_t;
+
+  static std::uint32_t bits_of(float distance) {
+    std::uint32_t bits;
+    __builtin_memcpy(&bits, &distance, sizeof bits);
+    return bits;
+  }
 
   // The nearest comes to lie on top.
   void push_children(const WideNode& node, float far) {
@@ -65,18 +69,18 @@ class HierarchyWalk {
         enters = max((load_float(&near_row[first]) - sweep_.near_offset[axis]) * sweep_.inverse[axis], enters);
         leaves = min((load_float(&far_row[first]) - sweep_.far_offset[axis]) * sweep_.inverse[axis], leaves);
       }
-      alignas(64) float near[kLanes];
+      alignas(64) std::uint32_t near[kLanes];
       store(near, enters.v);
       for (std::uint32_t met = lane_bits(enters <= leaves * kRounding); met != 0; met &= met - 1) {
         const int lane = __builtin_ctz(met);
-        insert(bottom, {near[lane], node.child[first + lane], node.is_leaf[first + lane]});
+        insert(bottom, Pending{near[lane]} << 32 | node.child[first + lane]);
       }
     }
   }
 
-  void insert(std::uint32_t bottom, const Pending& child) {
+  void insert(std::uint32_t bottom, Pending child) {
     std::uint32_t place = size_++;
-    for (; place > bottom && stack_[place - 1].near < child.near; --place) stack_[place] = stack_[place - 1];
+    for (; place > bottom && stack_[place - 1] < child; --place) stack_[place] = stack_[place - 1];
     stack_[place] = child;
   }
 

@@ -42,9 +42,8 @@ class Collapse {
       const Child& child = children[static_cast<std::size_t>(i)];
       const bool is_leaf = BvhChild::is_leaf(child.child);
       LIGHTWELL_CHECK(!is_leaf || BvhChild::count(child.child) == 1);
-      const std::uint32_t place = is_leaf ? bvh_.items[BvhChild::first(child.child)] : emit(child);
+      const std::uint32_t place = is_leaf ? bvh_.items[BvhChild::first(child.child)] | kWideLeafBit : emit(child);
       nodes_[node].child[i] = place;
-      nodes_[node].is_leaf[i] = is_leaf;
       set_box(nodes_[node], i, child.box);
     }
     return node;

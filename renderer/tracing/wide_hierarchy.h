@@ -12,9 +12,9 @@ constexpr int kWide = 16;
 /// Boxes of children, world space, metres.
 struct alignas(64) WideNode {
   float min[3][kWide], max[3][kWide];  // an empty child: min is infinite, max minus infinite
-  std::uint32_t child[kWide];          // leaf or node
-  bool is_leaf[kWide];
+  std::uint32_t child[kWide];          // node, or leaf with kWideLeafBit
 };
+constexpr std::uint32_t kWideLeafBit = 0x80000000u;
 
 /// Triangles, world space, metres. What is left over has no extent.
 struct alignas(64) WideLeaf {
