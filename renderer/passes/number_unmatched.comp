@@ -39,7 +39,7 @@ void main() {
 #endif
   if (!is_unmatched) return;
   const PatchPoint alone =
-      PatchPoint(true, map_pixel, point.position_ws, point.normal_ws, point.view_depth_m, point.material);
+      PatchPoint(true, map_pixel, point.position_ws, point.normal_ws, point.view_depth_m, point.material, 0.0);
   patch_points[2u * own] = packed_position(alone);
   patch_points[2u * own + 1u] = packed_surface(alone);
 }

@@ -9,6 +9,7 @@ struct PatchPoint {
   vec3 normal_ws;
   float view_depth_m;
   uint material;
+  float roughness;
 };
 
 const uint kNoSeed = 0xffffffffu;
@@ -20,9 +21,10 @@ uvec4 packed_position(PatchPoint point) {
 }
 uvec4 packed_surface(PatchPoint point) {
   return uvec4(packSnorm2x16(octahedral_from_unit(point.normal_ws)), floatBitsToUint(point.view_depth_m),
-               point.material, 0u);
+               point.material, floatBitsToUint(point.roughness));
 }
 PatchPoint unpack_patch_point(uvec4 position, uvec4 surface) {
   return PatchPoint(position.w != kNoSeed, ivec2(position.w & 0xffffu, position.w >> 16), uintBitsToFloat(position.xyz),
-                    unit_from_octahedral(unpackSnorm2x16(surface.x)), uintBitsToFloat(surface.y), surface.z);
+                    unit_from_octahedral(unpackSnorm2x16(surface.x)), uintBitsToFloat(surface.y), surface.z,
+                    uintBitsToFloat(surface.w));
 }
