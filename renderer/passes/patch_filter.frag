@@ -6,7 +6,7 @@
 #include "shaders/camera.glsl"
 
 layout(binding = UNIT_IMAGE_A) uniform sampler2D map;      // rgb; a: variance of its luminance, negative: nothing there
-layout(binding = UNIT_IMAGE_B) uniform sampler2D moments;  // FIRST: of luminance, to get the variance of
+layout(binding = UNIT_IMAGE_B) uniform sampler2D moments;  // FIRST: of luminance, to get the variance of; a: frames
 layout(binding = UNIT_IMAGE_C) uniform usampler2D guide;   // position, normal and roughness
 layout(location = 0) out vec4 filtered;
 
@@ -19,14 +19,14 @@ const float kUnknown = 1e30;
 
 #ifdef FIRST
 // The variance of the mean of all frames; negative where nothing is seen.
-vec4 value_at(ivec2 texel) {
-  const vec4 value = texelFetch(map, texel, 0);
-  const vec2 moment = texelFetch(moments, texel, 0).xy;
-  const float frames = value.a;
-  const float variance = max(moment.y - moment.x * moment.x, 0.0) / max(frames - 1.0, 1.0);
-  return vec4(value.rgb, frames <= 0.0 ? -1.0 : frames < kFewFrames ? kUnknown : variance);
+float variance_at(ivec2 texel) {
+  const vec4 moment = texelFetch(moments, texel, 0);
+  const float variance = max(moment.y - moment.x * moment.x, 0.0) / max(moment.w - 1.0, 1.0);
+  return moment.w <= 0.0 ? -1.0 : moment.w < kFewFrames ? kUnknown : variance;
 }
+vec4 value_at(ivec2 texel) { return vec4(texelFetch(map, texel, 0).rgb, variance_at(texel)); }
 #else
+float variance_at(ivec2 texel) { return texelFetch(map, texel, 0).a; }
 vec4 value_at(ivec2 texel) { return texelFetch(map, texel, 0); }
 #endif
 
@@ -37,7 +37,7 @@ float variance_about(ivec2 texel, float own, ivec2 size) {
   float sum = 0.0, count = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
-      const float variance = value_at(clamp(texel + ivec2(x, y), ivec2(0), size - 1)).a;
+      const float variance = variance_at(clamp(texel + ivec2(x, y), ivec2(0), size - 1));
       const bool known = variance >= 0.0 && variance < kUnknown;
       sum += known ? variance : 0.0;
       count += known ? 1.0 : 0.0;

@@ -11,7 +11,7 @@
 #include "shaders/sum_samples.glsl"
 
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_map;           // rgb; a: frames in it
-layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance: first, second; of late frames
+layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance: first, second; of late frames; frames
 layout(binding = UNIT_IMAGE_C) uniform usampler2D previous_guide;        // position, normal and roughness
 
 layout(location = 0) out vec4 out_map;
@@ -94,11 +94,11 @@ History history_at(vec2 before, Sought sought) {
     const vec2 share = mix(1.0 - fraction, fraction, vec2(offset));
     if (share.x * share.y > 1e-3) add_tap(history, corner + offset, share.x * share.y, sought);
   }
-  if (history.weight > 0.0) return history;
-  // An edge within the patch: its other surface was seen last. A neighbour knows this one.
+  // An edge within the patch: its other surface was seen last. A neighbour knows this one. A loop, and no branch: what a
+  // branch leaves out a software device does all the same.
   const ivec2 nearest = ivec2(floor(before + 0.5));
-  for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x) add_tap(history, nearest + ivec2(x, y), 1.0, sought);
+  const int neighbours = history.weight > 0.0 ? 0 : 9;
+  for (int i = 0; i < neighbours; ++i) add_tap(history, nearest + ivec2(i % 3, i / 3) - 1, 1.0, sought);
   return history;
 }
 
@@ -132,5 +132,5 @@ void main() {
   out_map = vec4(mix(history.light * share, now, fresh), frames + 1.0);
   out_moments.xy = mix(history.moments.xy * share, vec2(now_luminance, now_luminance * now_luminance), fresh);
   out_moments.z = mix(history.moments.z * share, now_luminance, max(fresh, 1.0 / kLateFrames));
-  out_moments.w = 0.0;
+  out_moments.w = frames + 1.0;
 }

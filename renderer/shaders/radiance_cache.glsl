@@ -43,7 +43,10 @@ CellPlace cell_place(vec3 position_ws, vec3 normal_ws, float most_side_m, bool c
 // kNoCell if there is none.
 uint find_cell(CellPlace place) {
   uint found = kNoCell;
-  for (uint probe = 0u; probe < kProbedBuckets; ++probe) {
+  // By a bound that no compiler knows, so that it stays a loop: a software device goes through one only as long as a lane
+  // has something to find, but through all that a branch leaves out.
+  const uint probes = min(kProbedBuckets, cell_buckets);
+  for (uint probe = 0u; probe < probes && found == kNoCell; ++probe) {
     const uint bucket = (place.bucket + probe) & (cell_buckets - 1u);
     const uvec4 keys = texelFetch(cell_key_texels, int(bucket));
     if (keys.x == place.key) found = 4u * bucket;
