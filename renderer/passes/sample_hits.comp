@@ -172,8 +172,12 @@ Cells cells_at(PathVertex at, Hit hit, HitPoint point, bool fills) {
   const float most_side_m = hit.t * kSideOverDistance;
   const CellPlace fine = cell_place(point.position_ws, point.geometric_normal_ws, most_side_m, false, u);
   const CellPlace coarse = cell_place(point.position_ws, point.geometric_normal_ws, most_side_m, true, u);
-  if (fills) return Cells(make_cell(fine), make_cell(coarse));
-  return Cells(find_cell(fine), find_cell(coarse));
+  Cells cells = Cells(find_cell(fine), find_cell(coarse));
+  const uint made_fine = make_cell(fine, fills && cells.fine == kNoCell);
+  const uint made_coarse = make_cell(coarse, fills && cells.coarse == kNoCell);
+  cells.fine = cells.fine == kNoCell ? made_fine : cells.fine;
+  cells.coarse = cells.coarse == kNoCell ? made_coarse : cells.coarse;
+  return cells;
 }
 
 // The fine cell's, unless it has hardly begun.

@@ -66,16 +66,16 @@ CellValue value_of(uint cell) {
 #ifdef CELL_INSERTION
 layout(std430, binding = BINDING_CELL_KEYS) buffer CellKeys { uint cell_keys[]; };
 
-// The cell, made where it is not there; kNoCell if its buckets are full. Places become empty between frames alone, so that
-// all who look for a key try the same empty places in the same order and agree.
-uint make_cell(CellPlace place) {
-  const uint known = find_cell(place);
-  if (known != kNoCell) return known;
-  for (uint probe = 0u; probe < 4u * kProbedBuckets; ++probe) {
+// A cell that find_cell() has not found, made where one is `wanted`; kNoCell if its buckets are full. Places become empty
+// between frames alone, so that all who look for a key try the same empty places in the same order and agree.
+uint make_cell(CellPlace place, bool wanted) {
+  uint cell = kNoCell;
+  const uint places = wanted ? 4u * kProbedBuckets : 0u;
+  for (uint probe = 0u; probe < places && cell == kNoCell; ++probe) {
     const uint index = (4u * place.bucket + probe) & (4u * cell_buckets - 1u);
     const uint there = atomicCompSwap(cell_keys[index], 0u, place.key);
-    if (there == 0u || there == place.key) return index;
+    if (there == 0u || there == place.key) cell = index;
   }
-  return kNoCell;
+  return cell;
 }
 #endif
