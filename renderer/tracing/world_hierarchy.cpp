@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 namespace lightwell {
 namespace {
@@ -75,9 +76,11 @@ const WideHierarchy* WorldHierarchy::update(const TraceScene& scene, ThreadPool&
     groups_ = std::move(groups);
   else
     lay_out(std::move(groups), scene.instances);
-  threads.parallel_for(static_cast<std::uint32_t>(groups_.size()), 1,
-                       [&](std::uint32_t i, std::uint32_t) { place(groups_[i], placed_[i]); });
-  collapse_bvh(build_bvh(boxes_, kLeafLimits, nullptr), nodes_);
+  std::atomic<bool> moved = false;
+  threads.parallel_for(static_cast<std::uint32_t>(groups_.size()), 1, [&](std::uint32_t i, std::uint32_t) {
+    if (place(groups_[i], placed_[i])) moved = true;
+  });
+  if (moved) collapse_bvh(build_bvh(boxes_, kLeafLimits, nullptr), nodes_);
   hierarchy_ = {nodes_.data(), leaves_.data(), 0};
   forget_degraded();
   return &hierarchy_;
@@ -124,12 +127,14 @@ void WorldHierarchy::lay_out(std::vector<GeometryGroup> groups, std::span<const 
   topologies_ = std::move(used);
 }
 
-void WorldHierarchy::place(const GeometryGroup& group, Placed& placed) {
-  if (placed.world_from_object == group.world_from_object && placed.shape == group.deformed) return;
+// False where it is already.
+bool WorldHierarchy::place(const GeometryGroup& group, Placed& placed) {
+  if (placed.world_from_object == group.world_from_object && placed.shape == group.deformed) return false;
   placed.world_from_object = group.world_from_object;
   placed.shape = group.deformed;
   place_triangles(group, placed);
   fit_boxes(placed);
+  return true;
 }
 
 void WorldHierarchy::place_triangles(const GeometryGroup& group, const Placed& placed) {

@@ -40,7 +40,7 @@ class WorldHierarchy {
 
   std::shared_ptr<const Topology> topology_of(const GeometryGroup& group, std::span<const Instance> instances) const;
   void lay_out(std::vector<GeometryGroup> groups, std::span<const Instance> instances);
-  void place(const GeometryGroup& group, Placed& placed);
+  bool place(const GeometryGroup& group, Placed& placed);
   void place_triangles(const GeometryGroup& group, const Placed& placed);
   void fit_boxes(Placed& placed);
   void forget_degraded();
