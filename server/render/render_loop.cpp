@@ -7,15 +7,9 @@
 #include <thread>
 
 #include "server/operations/log.h"
+#include "server/render/device_hold.h"
 
 namespace lightwell {
-
-/// Render time used up, in seconds. Who has used least goes first. One that comes back from idling starts level with
-/// the others: idling saves nothing up.
-struct RenderAccount {
-  double used_s = 0.0;
-  double level_s = 0.0;  // what the one of its subjects had used that was served last
-};
 
 namespace {
 
@@ -23,21 +17,6 @@ using std::chrono::steady_clock;
 
 // Who has waited for the server to start comes at once, and wants a picture at once.
 constexpr auto kBeforeWarmingUpMore = std::chrono::seconds(3);
-
-struct Seat {
-  std::shared_ptr<Subject> subject;
-  std::shared_ptr<RenderAccount> account;
-  Share share;
-  std::unique_ptr<RenderView> view;
-  double used_s = 0.0;  // of the account's, by this subject
-  bool was_due = false;
-
-  /// Jobs come one after another, the subjects of a session by turns.
-  bool goes_before(const Seat& other) const {
-    if (account != other.account) return account->used_s < other.account->used_s;
-    return share == Share::kOwn && used_s < other.used_s;
-  }
-};
 
 /// A source and those it renders for. Lives on the render thread.
 class Studio {
@@ -50,14 +29,17 @@ class Studio {
   void seat(std::shared_ptr<Subject> subject, Share share, std::shared_ptr<RenderAccount> account) {
     if (share == Share::kJobs) account = jobs_;
     if (!account) account = RenderLoop::make_account();
-    seats_.push_back({std::move(subject), std::move(account), share, nullptr});
+    Seat& seat = seats_.emplace_back();
+    seat.subject = std::move(subject);
+    seat.account = std::move(account);
+    seat.share = share;
   }
 
   void let_go_of_ended() {
     std::erase_if(seats_, [](const Seat& seat) { return seat.subject->ended(); });
   }
 
-  /// The seat whose turn it is, or none; `wake_at` is when one is due next.
+  /// The seat whose turn it is, or none; `wake_at` is when one is due next, or the device has been kept long enough.
   Seat* choose(SteadyTime now, SteadyTime& wake_at) {
     Seat* chosen = nullptr;
     wake_at = kNever;
@@ -74,20 +56,28 @@ class Studio {
       else if (!chosen || seat.goes_before(*chosen))
         chosen = &seat;
     }
-    return chosen;
+    const std::optional<SteadyTime> held_until = chosen ? hold_.until(*chosen, seats_, now) : std::nullopt;
+    is_held_ = held_until.has_value();
+    if (!is_held_) return chosen;
+    wake_at = std::min(wake_at, *held_until);
+    return nullptr;
   }
+
+  /// Somebody wants a picture, but not yet.
+  bool is_held() const { return is_held_; }
 
   void render(Seat& seat) {
     const SteadyTime start = steady_clock::now();
+    hold_.ends(seat, seats_, start);
     level_s_ = std::max(level_s_, seat.account->used_s);
     seat.account->level_s = std::max(seat.account->level_s, seat.used_s);
     Result<Shot> shot = seat.subject->take_shot(start);
     Result<Frame> frame = shot ? render(*shot, seat.view) : Result<Frame>(shot.error());
-    const double seconds = std::chrono::duration<double>(steady_clock::now() - start).count();
+    const SteadyTime end = steady_clock::now();
+    const double seconds = std::chrono::duration<double>(end - start).count();
     if (shot) observer_(seat.share, frame, seconds);
     seat.subject->shot_done(std::move(frame));
-    seat.account->used_s += seconds;
-    seat.used_s += seconds;
+    seat.charge(seconds, end);
   }
 
   Result<Frame> render(const Shot& shot, std::unique_ptr<RenderView>& view) {
@@ -117,6 +107,8 @@ class Studio {
   std::unique_ptr<PictureSource> source_;  // null after the device was lost, until the next frame
   std::vector<Seat> seats_;                // their views go before the source
   std::shared_ptr<RenderAccount> jobs_ = std::make_shared<RenderAccount>();
+  DeviceHold hold_;
+  bool is_held_ = false;
   double level_s_ = 0.0;  // the account of who was served last: the least of those that wait
 };
 
@@ -181,8 +173,9 @@ void RenderLoop::State::serve(Studio& studio, Shot warm_up) {
       studio.render(*seat);
       continue;
     }
-    if (warmed_up < sizes.size()) wake_at = std::min(wake_at, warm_up_from);
-    if (warmed_up < sizes.size() && steady_clock::now() >= warm_up_from) {  // and nobody waits for a picture
+    const bool may_warm_up = warmed_up < sizes.size() && !studio.is_held();
+    if (may_warm_up) wake_at = std::min(wake_at, warm_up_from);
+    if (may_warm_up && steady_clock::now() >= warm_up_from) {  // and nobody waits for a picture
       warm_up.request.size_px = sizes[warmed_up++];
       std::unique_ptr<RenderView> view;
       if (const Result<Frame> frame = studio.render(warm_up, view); !frame)  // who asks for such a picture is told, too
