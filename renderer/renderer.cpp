@@ -192,7 +192,6 @@ CameraBlock Renderer::State::bind_frame(const Scene& scene, const FrameRequest& 
 }
 
 void Renderer::State::show(View& view, const Picture& picture, const FrameRequest& request, Frame& frame) {
-  view.display.resize(request.size_px);
   view.display.measure_exposure(picture, view.exposure_share(request.time_s));
   if (request.want_display) view.display.run(picture, request.settings);
   timer.mark("display");
@@ -203,10 +202,7 @@ void Renderer::State::show(View& view, const Picture& picture, const FrameReques
 
 void Renderer::State::read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const {
   gl::wait_for_device();
-  if (request.want_display) {
-    const auto pixels = view.display.display_rgbx();
-    frame.display_rgbx.assign(pixels.begin(), pixels.end());
-  }
+  if (request.want_display) frame.display_rgbx = view.display.read_rgbx();
   if (request.want_linear) {
     frame.linear_rgb.resize(static_cast<std::size_t>(request.size_px.x) * static_cast<std::size_t>(request.size_px.y) *
                             3);

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include "renderer/gl/gl.h"
@@ -205,6 +207,12 @@ void APIENTRY on_debug_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei 
 }
 
 }  // namespace
+
+void share_processors_evenly() {
+  constexpr int kKeepWhatIsSet = 0;
+  const unsigned threads = 2 * std::max(1u, std::thread::hardware_concurrency());
+  setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), kKeepWhatIsSet);
+}
 
 std::vector<DeviceInfo> enumerate_devices() {
   const std::vector<EGLDeviceEXT> devices = query_devices();

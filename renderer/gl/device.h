@@ -30,6 +30,11 @@ class NoDevice : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Mesa's software device gives each of its threads an equal part of a compute dispatch and waits for the last. With
+/// two threads a processor, one that finishes early takes over what another has not come to; a number that the
+/// environment names stays. Changes the environment: before there are other threads.
+void share_processors_evenly();
+
 /// Tries every device; never throws and never crashes without one.
 std::vector<DeviceInfo> enumerate_devices();
 

@@ -1,9 +1,8 @@
-// Through a wide hierarchy, nearest boxes first: with one ray, or with what rays along one direction sweep together.
-// For files that are compiled for a kind of processor: see renderer/lanes/glsl.h.
+// Through a wide hierarchy, nearest boxes first, with what rays along one direction sweep together. For files that are
+// compiled for a kind of processor: see renderer/lanes/glsl.h.
 #pragma once
 
 #include "renderer/lanes/parallel_rays.h"
-#include "renderer/lanes/single_ray.h"
 
 namespace lightwell::lanes {
 namespace {
@@ -98,17 +97,6 @@ void nearest_hits(const WideHierarchy& hierarchy, ParallelRays& rays) {
   HierarchyWalk(hierarchy, Sweep(rays.direction_ws, leaf.least, leaf.greatest))
       .follow(kNothing,
               [&](const WideLeaf& at, std::uint32_t number, float far) { return leaf.try_leaf(at, number, far); });
-}
-
-void nearest_hits_of_single_rays(const WideHierarchy& hierarchy, const SingleRay* rays, SingleHit* hits,
-                                 std::uint32_t count) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    hits[i] = {-1.0f, 0, 0, 0.0f, 0.0f};
-    if (!is_active(rays[i])) continue;
-    SingleRayLeaf leaf(rays[i], hits[i]);
-    HierarchyWalk(hierarchy, Sweep(rays[i].direction_ws, rays[i].origin_ws, rays[i].origin_ws))
-        .follow(rays[i].t_max, [&](const WideLeaf& at, std::uint32_t, float far) { return leaf.try_leaf(at, far); });
-  }
 }
 
 }  // namespace

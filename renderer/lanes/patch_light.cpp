@@ -292,8 +292,7 @@ constexpr const char* kInstructions = "plain";
 }  // namespace
 
 extern const PatchKernels LIGHTWELL_LANES_NAME;
-const PatchKernels LIGHTWELL_LANES_NAME = {
-    kInstructions, unpack,          start_rays, meet, collect_missed, nearest_hits, nearest_hits_of_single_rays,
-    gather,        gather_scattered};
+const PatchKernels LIGHTWELL_LANES_NAME = {kInstructions,  unpack,       start_rays, meet,
+                                           collect_missed, nearest_hits, gather,     gather_scattered};
 
 }  // namespace lightwell::lanes

@@ -98,16 +98,6 @@ struct alignas(64) ParallelRays {
   std::uint32_t count;    // up to kChunkPixels
 };
 
-/// As Ray and Hit in renderer/tracing/tracer.h.
-struct SingleRay {
-  float origin_ws[3], t_min, direction_ws[3], t_max;
-};
-struct SingleHit {
-  float t;
-  std::uint32_t instance, triangle;
-  float u, v;
-};
-
 /// `struct Light` of shaders/lights.glsl as std140 lays it out.
 struct PackedLight {
   float position_ws[3];
@@ -147,9 +137,6 @@ struct PatchKernels {
   void (*collect_missed)(const PatchPixels& pixels, PixelRun run, ParallelRays& rays);
   /// Finds the nearest triangle on each of at least one ray.
   void (*nearest_hits)(const WideHierarchy& hierarchy, ParallelRays& rays);
-  /// The same for rays that have nothing in common.
-  void (*nearest_hits_of_single_rays)(const WideHierarchy& hierarchy, const SingleRay* rays, SingleHit* hits,
-                                      std::uint32_t count);
   /// Adds to the sums what arrives from the candidates that are kept, and from the sky where there is none; nothing
   /// where t is negative.
   void (*gather)(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, const Candidate* candidates,

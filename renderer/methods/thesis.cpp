@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "renderer/passes/host_trace.h"
-
 namespace lightwell {
 
 namespace {
@@ -232,7 +230,7 @@ void ThesisMethod::trace_candidates(FrameContext& frame, const Directions& direc
   frame.rays += std::uint64_t{directions.ray_count} * groups;
   if (groups > 1)
     frame.triangle_groups.closest_hits(directions.rays, directions.ray_count, candidates_, candidates_of_group_);
-  else if (!trace_few_triangles(frame.tracer, directions.rays, directions.ray_count, candidates_))
+  else
     frame.tracer.closest_hit(directions.rays, directions.ray_count, candidates_);
   frame.timer.mark("trace");
 }

@@ -239,46 +239,49 @@ void ComposePass::draw_background(const gl::Defines& defines, const Settings& se
 
 DisplayPass::DisplayPass(gl::ShaderLibrary& shaders)
     : exposure_program_(shaders.compute("passes/exposure.comp")),
-      display_program_(shaders.compute("passes/display.comp")),
+      display_program_(shaders.raster("passes/display.vert", "passes/display.frag")),
       exposure_size_px_(exposure_program_, "size_px"),
       smoothing_(exposure_program_, "smoothing"),
-      display_size_px_(display_program_, "size_px"),
       mapping_(display_program_, "mapping"),
       neutral_curve_(display_program_, "neutral_curve"),
       fixed_exposure_(display_program_, "fixed_exposure"),
-      exposure_("exposure", sizeof(DeviceExposure), gl::BufferUse::kHostVisible),
-      display_("display", 0, gl::BufferUse::kHostVisible) {
+      exposure_("exposure", sizeof(DeviceExposure), gl::BufferUse::kHostVisible) {
   exposure_.clear();
-}
-
-void DisplayPass::resize(glm::ivec2 size_px) {
-  size_px_ = size_px;
-  display_.reserve(static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y) * 4);
+  exposure_texel_.attach(exposure_);
 }
 
 void DisplayPass::measure_exposure(const Picture& picture, float smoothing) {
   picture.image.bind(UNIT_IMAGE_A);
   exposure_.bind_storage(BINDING_EXPOSURE);
-  exposure_size_px_ = size_px_;
+  exposure_size_px_ = picture.image.size_px();
   smoothing_ = smoothing;
   exposure_program_->dispatch(1u, 1u);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void DisplayPass::run(const Picture& picture, const Settings& settings) {
+  resize(picture.image.size_px());
   picture.image.bind(UNIT_IMAGE_A);
-  exposure_.bind_storage(BINDING_EXPOSURE);
-  display_.bind_storage(BINDING_OUTPUT);
-  display_size_px_ = size_px_;
+  exposure_texel_.bind(UNIT_IMAGE_B);
   mapping_ = mapping_of(settings.view);
   neutral_curve_ = settings.tone_map == ToneMap::kNeutral ? 1 : 0;
   fixed_exposure_ = settings.exposure_ev ? std::exp2(*settings.exposure_ev) : 0.0f;
-  display_program_->dispatch(size_px_);
+  framebuffer_.bind();
+  display_program_->use();
+  full_screen_.draw_full_screen();
 }
 
-std::span<const std::uint8_t> DisplayPass::display_rgbx() const {
-  return {reinterpret_cast<const std::uint8_t*>(display_.host()),
-          static_cast<std::size_t>(size_px_.x) * static_cast<std::size_t>(size_px_.y) * 4};
+void DisplayPass::resize(glm::ivec2 size_px) {
+  if (display_ && display_.size_px() == size_px) return;
+  display_ = gl::Texture("display", GL_RGBA8, size_px);
+  framebuffer_ = gl::Framebuffer("display", {&display_}, nullptr);
+}
+
+std::vector<std::uint8_t> DisplayPass::read_rgbx() const {
+  const glm::ivec2 size_px = display_.size_px();
+  std::vector<std::uint8_t> rgbx(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y) * 4);
+  glGetTextureImage(display_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgbx.size()), rgbx.data());
+  return rgbx;
 }
 
 float DisplayPass::measured_exposure_ev() const {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
@@ -108,24 +108,28 @@ class ComposePass {
 class DisplayPass {
  public:
   explicit DisplayPass(gl::ShaderLibrary& shaders);
-  void resize(glm::ivec2 size_px);
   /// Measures the picture's median luminance; `smoothing` is the share of the way towards it in this frame.
   void measure_exposure(const Picture& picture, float smoothing);
   void run(const Picture& picture, const Settings& settings);
 
-  /// The last picture, valid after gl::wait_for_device(): 4 bytes a pixel.
-  std::span<const std::uint8_t> display_rgbx() const;
+  /// The last picture, 4 bytes a pixel; waits for it.
+  std::vector<std::uint8_t> read_rgbx() const;
+  /// Valid after gl::wait_for_device().
   float measured_exposure_ev() const;
 
  private:
+  void resize(glm::ivec2 size_px);
+
   gl::ProgramPtr exposure_program_, display_program_;
   gl::Uniform<glm::ivec2> exposure_size_px_;
   gl::Uniform<float> smoothing_;
-  gl::Uniform<glm::ivec2> display_size_px_;
   gl::Uniform<int> mapping_, neutral_curve_;
   gl::Uniform<float> fixed_exposure_;
-  gl::Buffer exposure_, display_;
-  glm::ivec2 size_px_{0};
+  gl::Buffer exposure_;
+  gl::BufferTexture exposure_texel_{"exposure", GL_R32F};
+  gl::Texture display_;
+  gl::Framebuffer framebuffer_;
+  gl::EmptyVertexArray full_screen_;
 };
 
 }  // namespace lightwell

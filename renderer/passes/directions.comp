@@ -31,7 +31,7 @@ struct Origin {
 #ifdef PATCHES
 #include "shaders/patches.glsl"
 layout(binding = UNIT_PATCH_POINTS) uniform usamplerBuffer patch_points;
-uniform uint first_unmatched;  // patches from here on are single pixels
+uniform uint first_unmatched;  // patches from here on have the seed of an unmatched pixel
 
 Origin origin_of_patch(uint index) {
   const PatchPoint patch_point =

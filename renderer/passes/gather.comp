@@ -106,7 +106,11 @@ void main() {
 #endif
   const vec3 albedo = max(directional_albedo(point.brdf, cos_out), vec3(1e-4));
   const vec3 demodulated = point.valid ? sum / albedo : vec3(0.0);
+#ifdef SUMMED
+  const vec4 before = vec4(0.0);
+#else
   const vec4 before = first_batch == 1 ? vec4(0.0) : imageLoad(indirect_map, map_pixel);
+#endif
   imageStore(indirect_map, map_pixel, vec4(before.rgb + demodulated, point.valid ? 1.0 : 0.0));
 #ifdef GUIDE
   if (first_batch == 0) return;

@@ -1,5 +1,6 @@
 #include "renderer/passes/host_chunk.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -23,8 +24,9 @@ HostChunk::HostChunk(const HostBatch& batch, TriangleCache& triangles, std::uint
   lanes::PackedReceivers packed;
   std::memset(&packed, 0, sizeof packed);  // what lies beyond the last pixel is computed with, too
   std::memset(&pixels_, 0, sizeof pixels_);
+  sort_by_patch();
   for (std::uint32_t i = 0; i < count_; ++i) {
-    const PackedReceiver& receiver = batch.receivers[begin + i];
+    const PackedReceiver& receiver = batch.receivers[begin + places_[i]];
     packed.normal[i] = receiver.normal;
     packed.geometric_normal[i] = receiver.geometric_normal;
     packed.base_color_rg[i] = receiver.base_color_rg;
@@ -32,7 +34,7 @@ HostChunk::HostChunk(const HostBatch& batch, TriangleCache& triangles, std::uint
     packed.material_roughness[i] = receiver.material_roughness;
     packed.dielectric[i] = receiver.dielectric;
     packed.to_camera[i] = receiver.to_camera;
-    add_origin(i, batch.origins[begin + i]);
+    add_origin(i, batch.origins[begin + places_[i]]);
   }
   kernels_.unpack(packed, pixels_);
 }
@@ -50,9 +52,17 @@ void HostChunk::add_to(glm::vec4* sums, bool is_first) const {
   for (std::uint32_t i = 0; i < count_; ++i) {
     const glm::vec3 sum(pixels_.sum[0][i], pixels_.sum[1][i], pixels_.sum[2][i]);
     const float hits = pixels_.hit_count[i];
-    glm::vec4& out = sums[first_ + i];
+    glm::vec4& out = sums[first_ + places_[i]];
     out = is_first ? glm::vec4(sum, hits > 0.0f ? pixels_.distance[i] / hits : 0.0f) : out + glm::vec4(sum, 0.0f);
   }
+}
+
+// Those of a patch side by side, in their order.
+void HostChunk::sort_by_patch() {
+  std::array<std::uint64_t, lanes::kChunkPixels> keys;
+  for (std::uint32_t i = 0; i < count_; ++i) keys[i] = std::uint64_t{batch_.origins[first_ + i].patch_index} << 32 | i;
+  if (!std::is_sorted(keys.begin(), keys.begin() + count_)) std::sort(keys.begin(), keys.begin() + count_);
+  for (std::uint32_t i = 0; i < count_; ++i) places_[i] = static_cast<std::uint32_t>(keys[i]);
 }
 
 void HostChunk::add_origin(std::uint32_t i, const PixelOrigin& origin) {
@@ -63,8 +73,9 @@ void HostChunk::add_origin(std::uint32_t i, const PixelOrigin& origin) {
   if (origin.patch_index == kNoPatch) return;
   if (run_count_ == 0 || runs_[run_count_ - 1].pixels.end != i ||
       runs_[run_count_ - 1].patch_index != origin.patch_index)
-    runs_[run_count_++] = {{i, i}, origin.patch_index};
-  ++runs_[run_count_ - 1].pixels.end;
+    runs_[run_count_++] = {{i, i}, origin.patch_index, false};
+  PatchRun& run = runs_[run_count_ - 1];
+  run.is_alone = ++run.pixels.end - run.pixels.begin == 1 && origin.is_patch != 0;
 }
 
 // A patch's directions lie far apart, which the processor does not foresee.
@@ -78,7 +89,7 @@ void HostChunk::gather(const PatchRun& run, std::uint32_t direction_index) {
   const std::size_t ray = std::size_t{direction_index} * batch_.patch_count + run.patch_index;
   const lanes::PatchDirection& direction = batch_.directions[ray];
   if (direction.pdf <= 0.0f) return;
-  if (run.patch_index >= batch_.first_unmatched && batch_.group_count == 1)
+  if (run.is_alone && batch_.group_count == 1)
     return scatter_alone(run.pixels.begin, direction, batch_.candidates[ray]);
   kernels_.start_rays(pixels_, run.pixels, direction);
   candidate_count_ = 0;
@@ -96,7 +107,7 @@ void HostChunk::gather(const PatchRun& run, std::uint32_t direction_index) {
 
 // What the pixel's own patch meets is what it meets itself. As start_rays() of the kernels.
 void HostChunk::scatter_alone(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit) {
-  const PixelOrigin& origin = batch_.origins[first_ + pixel];
+  const PixelOrigin& origin = batch_.origins[first_ + places_[pixel]];
   const bool is_down = glm::dot(origin.down_ws, lanes::along(direction)) > 0.0f;
   scattered_.add(pixel, is_down ? origin.above_ws + origin.down_ws : origin.above_ws, direction, hit);
 }

@@ -17,7 +17,6 @@ struct HostBatch {
   const lanes::PatchDirection* directions;
   const Hit* candidates;
   std::uint32_t patch_count, direction_count, group_count;
-  std::uint32_t first_unmatched;  // patches from here on are single pixels
   bool trace_missed;
   DeviceScene::HostHitData scene;
   const lanes::LightEnvironment& environment;
@@ -43,7 +42,9 @@ class HostChunk {
   struct PatchRun {
     lanes::PixelRun pixels;
     std::uint32_t patch_index;
+    bool is_alone;  // the pixel is the patch
   };
+  void sort_by_patch();
   glm::vec3 start_of(std::uint32_t pixel) const;
   void add_origin(std::uint32_t i, const PixelOrigin& origin);
   void prefetch(const PatchRun& run, std::uint32_t direction_index) const;
@@ -66,6 +67,7 @@ class HostChunk {
   const HostBatch& batch_;
   TriangleCache& triangles_;
   const std::uint32_t first_, count_;
+  std::array<std::uint32_t, lanes::kChunkPixels> places_;  // of the pixels among the slots
   lanes::PatchPixels pixels_;
   ScatteredHits scattered_{pixels_, triangles_, batch_.environment};
   std::array<PatchRun, lanes::kChunkPixels> runs_;

@@ -20,7 +20,7 @@ uniform int view;               // ViewKind
 uniform uint direction;         // within the batch
 uniform uint direction_count;   // of the batch
 uniform uint patch_count;
-uniform uint first_unmatched;   // patches from here on are single pixels
+uniform uint first_unmatched;   // patches from here on are of unmatched pixels
 uniform uint group_count;       // of triangles
 
 uint patch_of_slot(uint slot) {

@@ -9,6 +9,7 @@
 #include "shaders/g_buffer.glsl"
 #include "shaders/patch_samples.glsl"
 #include "shaders/sum_samples.glsl"
+#include "shaders/map_variance.glsl"
 
 layout(binding = UNIT_IMAGE_A) uniform sampler2D previous_map;           // rgb; a: frames in it
 layout(binding = UNIT_IMAGE_B) uniform sampler2D previous_moments;       // of luminance: first, second; of late frames; frames
@@ -17,6 +18,7 @@ layout(binding = UNIT_IMAGE_C) uniform usampler2D previous_guide;        // posi
 layout(location = 0) out vec4 out_map;
 layout(location = 1) out vec4 out_moments;
 layout(location = 2) out uvec4 out_guide;
+layout(location = 3) out vec4 out_filtered;  // what patch_filter.frag begins with
 
 #ifdef MOTION
 layout(binding = UNIT_G_MOTION) uniform sampler2D g_motion;  // metres since the frame before
@@ -111,6 +113,7 @@ void main() {
   if (!point.valid) {
     out_map = vec4(0.0);
     out_moments = vec4(0.0);
+    out_filtered = vec4(0.0, 0.0, 0.0, -1.0);
     return;
   }
   // History never lets go of what is not a number, and luminance is squared.
@@ -133,4 +136,5 @@ void main() {
   out_moments.xy = mix(history.moments.xy * share, vec2(now_luminance, now_luminance * now_luminance), fresh);
   out_moments.z = mix(history.moments.z * share, now_luminance, max(fresh, 1.0 / kLateFrames));
   out_moments.w = frames + 1.0;
+  out_filtered = vec4(out_map.rgb, variance_of_mean(out_moments.xy, out_moments.w));
 }

@@ -25,7 +25,7 @@ static_assert(sizeof(PackedReceiver) == 32);
 struct Patches {
   bool have_candidates = false;          // patches have candidates, not hits
   std::uint32_t count = 0;               // of patches: those of the map, then pixels that are similar to none of them
-  std::uint32_t first_unmatched = 0;     // such a pixel is a patch of its own, from this number on
+  std::uint32_t first_unmatched = 0;     // from this number on a patch is such a pixel, and may be others like it
   gl::Buffer points{"patch points", 0};  // 2 uvec4 a patch: shaders/patches.glsl
   gl::Buffer references{"reference map", 0};  // uint32 a slot: its patch, or none, or a mark that it is unmatched
   gl::Buffer pixel_origins;                   // 2 vec4 a slot: see PixelOrigin in renderer/tracing/tracer.h
@@ -64,11 +64,11 @@ class PatchesPass {
     gl::Uniform<float> normal_threshold, depth_threshold;
   };
   void dispatch(Variant& variant, const IndirectMapGrid& grid, const ActiveBlocks& blocks, const Settings& settings,
-                std::uint32_t invocations, std::uint32_t group);
-  std::uint32_t number_unmatched(std::uint32_t blocks);
+                std::uint32_t invocations);
+  std::uint32_t number_unmatched();
 
-  gl::Variants<Variant> scale_down_, reference_map_, number_unmatched_;
-  gl::Buffer unmatched_, first_of_block_;
+  gl::Variants<Variant> scale_down_, reference_map_, share_unmatched_, number_unmatched_;
+  gl::Buffer owners_, first_of_patch_;
   Patches patches_;
 };
 

@@ -32,25 +32,24 @@ ReconstructionPass::ReconstructionPass(gl::ShaderLibrary& shaders)
     : light_([&shaders](const gl::Defines& defines) {
         return shaders.raster("passes/full_screen_camera.vert", "passes/patch_light.frag", defines);
       }),
-      filter_first_(filter_step(shaders, {"FIRST 1"})),
-      filter_next_(filter_step(shaders, {})),
+      filter_(filter_step(shaders, {})),
       filter_last_(filter_step(shaders, {"LAST 1"})) {}
 
 void ReconstructionPass::resize(glm::ivec2 map_size_px) {
   if (now_.map && now_.map.size_px() == map_size_px) return;
   has_history_ = false;
-  for (History* history : {&now_, &before_}) {
-    history->map = gl::Texture("indirect map", GL_RGBA32F, map_size_px);
-    history->moments = gl::Texture("moments of the indirect map", GL_RGBA32F, map_size_px);
-    history->guide = gl::Texture("guide of the indirect map", GL_RGBA32UI, map_size_px);
-    history->framebuffer =
-        gl::Framebuffer("indirect map", {&history->map, &history->moments, &history->guide}, nullptr);
-  }
   gl::TextureOptions options;
   options.min_filter = options.mag_filter = GL_LINEAR;
   for (Scratch& scratch : scratch_) {
     scratch.map = gl::Texture("filtered indirect map", GL_RGBA32F, map_size_px, options);
     scratch.framebuffer = gl::Framebuffer("filtered indirect map", {&scratch.map}, nullptr);
+  }
+  for (History* history : {&now_, &before_}) {
+    history->map = gl::Texture("indirect map", GL_RGBA32F, map_size_px);
+    history->moments = gl::Texture("moments of the indirect map", GL_RGBA32F, map_size_px);
+    history->guide = gl::Texture("guide of the indirect map", GL_RGBA32UI, map_size_px);
+    history->framebuffer =
+        gl::Framebuffer("indirect map", {&history->map, &history->moments, &history->guide, &scratch_[0].map}, nullptr);
   }
 }
 
@@ -92,11 +91,10 @@ ReconstructedMap ReconstructionPass::nothing() const {
 }
 
 ReconstructedMap ReconstructionPass::filter() {
-  now_.moments.bind(UNIT_IMAGE_B);
   now_.guide.bind(UNIT_IMAGE_C);
-  const gl::Texture* from = &now_.map;
-  Scratch* to = &scratch_[0];
-  const std::pair<Filter*, int> steps[] = {{&filter_first_, 1}, {&filter_next_, 2}, {&filter_last_, 4}};
+  const gl::Texture* from = &scratch_[0].map;
+  Scratch* to = &scratch_[1];
+  const std::pair<Filter*, int> steps[] = {{&filter_, 1}, {&filter_, 2}, {&filter_last_, 4}};
   for (const auto& [filter, stride] : steps) {
     from->bind(UNIT_IMAGE_A);
     to->framebuffer.bind();

@@ -60,9 +60,9 @@ class ReconstructionPass {
   ReconstructedMap filter();
 
   gl::Variants<Light> light_;
-  Filter filter_first_, filter_next_, filter_last_;
+  Filter filter_, filter_last_;
   History now_, before_;
-  Scratch scratch_[2];
+  Scratch scratch_[2];  // the first: what the filter begins with
   bool has_history_ = false;
   gl::EmptyVertexArray full_screen_;
 };

@@ -1,6 +1,6 @@
 // The reference map (thesis 5.2): each pixel of the indirect map refers to its own patch where it is similar to it, else to
 // the nearest of the eight patches around that it is similar to, else to none: it will trace rays of its own.
-layout(local_size_x = 256) in;  // a block of the map
+layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
@@ -11,9 +11,6 @@ layout(local_size_x = 256) in;  // a block of the map
 
 layout(binding = UNIT_PATCH_POINTS) uniform usamplerBuffer patch_points;  // 2 texels a patch
 layout(std430, binding = BINDING_REFERENCES) writeonly buffer References { uint references[]; };  // one a slot
-layout(std430, binding = BINDING_OUTPUT) writeonly buffer Unmatched { uint unmatched[]; };        // how many, one a block
-
-shared uint unmatched_bits[8];
 
 PatchPoint fetch_patch(uint index) {
   return unpack_patch_point(texelFetch(patch_points, int(2u * index)), texelFetch(patch_points, int(2u * index + 1u)));
@@ -42,32 +39,14 @@ uint similar_neighbour(PatchPoint point, ivec2 map_pixel) {
 }
 
 void main() {
-  const uint block = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-  const uint lane = gl_LocalInvocationIndex;
-  const uint slot = block * kBlockSlots + lane;
-  if (lane < 8u) unmatched_bits[lane] = 0u;
-  barrier();
-
-  const bool exists = slot < slot_count;
-  const ivec2 map_pixel = exists ? pixel_of_slot(slot) : ivec2(-1);
+  const uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
+  if (slot >= slot_count) return;
+  const ivec2 map_pixel = pixel_of_slot(slot);
   const PatchPoint point = point_of_pixel(map_pixel);
   uint reference = slot >> 2 * log2_patch_side;
-  if (!exists || !point.valid)
+  if (!point.valid)
     reference = kNoPatch;
   else if (!is_similar(point, fetch_patch(reference)))
     reference = similar_neighbour(point, map_pixel);
-  const bool is_unmatched = point.valid && reference == kNoPatch;
-  if (is_unmatched) atomicOr(unmatched_bits[lane / 32u], 1u << (lane % 32u));
-  barrier();
-
-  // Its number among those of its block; made one of the whole map in number_unmatched.comp.
-  uint before = 0u, all = 0u;
-  for (uint word = 0u; word < 8u; ++word) {
-    const uint bits = unmatched_bits[word];
-    const uint below = word < lane / 32u ? ~0u : word == lane / 32u ? (1u << (lane % 32u)) - 1u : 0u;
-    before += bitCount(bits & below);
-    all += bitCount(bits);
-  }
-  if (exists) references[slot] = is_unmatched ? kUnmatchedBit | before : reference;
-  if (exists && lane == 0u) unmatched[block] = all;
+  references[slot] = point.valid && reference == kNoPatch ? kUnmatchedBit : reference;
 }

@@ -14,10 +14,12 @@ struct PatchPoint {
 
 const uint kNoSeed = 0xffffffffu;
 const uint kNoPatch = 0xffffffffu;
-const uint kUnmatchedBit = 0x40000000u;  // of a reference, until it is numbered
+const uint kUnmatchedBit = 0x40000000u;  // of a reference, until it is numbered: see share_unmatched.comp
+const uint kSharedBit = 0x20000000u;     // with it: the rays are another pixel's
 
+uint packed_seed(ivec2 seed) { return uint(seed.x | seed.y << 16); }
 uvec4 packed_position(PatchPoint point) {
-  return uvec4(floatBitsToUint(point.position_ws), point.valid ? uint(point.seed.x | point.seed.y << 16) : kNoSeed);
+  return uvec4(floatBitsToUint(point.position_ws), point.valid ? packed_seed(point.seed) : kNoSeed);
 }
 uvec4 packed_surface(PatchPoint point) {
   return uvec4(packSnorm2x16(octahedral_from_unit(point.normal_ws)), floatBitsToUint(point.view_depth_m),

@@ -26,17 +26,11 @@ struct DeviceTriangle {
 };
 static_assert(sizeof(DeviceTriangle) == 48);
 
-// All triangles of a group, primitive by primitive.
 std::vector<DeviceTriangle> triangles_of(const GeometryGroup& group) {
   std::vector<DeviceTriangle> triangles;
-  for (std::uint32_t p = 0; p < group.key.primitives.size(); ++p) {
-    const Primitive& primitive = *group.key.primitives[p];
-    const auto& positions = group.deformed ? group.deformed->positions : primitive.positions;
-    const auto& indices = primitive.indices;
-    for (std::uint32_t i = 0; i < indices.size() / 3; ++i)
-      triangles.push_back(
-          {positions[indices[3 * i]], i, positions[indices[3 * i + 1]], p, positions[indices[3 * i + 2]], 0});
-  }
+  for_triangles(group, [&](std::uint32_t primitive, std::uint32_t triangle, const std::array<glm::vec3, 3>& corners) {
+    triangles.push_back({corners[0], triangle, corners[1], primitive, corners[2], 0});
+  });
   return triangles;
 }
 

@@ -2,6 +2,7 @@
 // node) share one, so that a mesh of many overlapping primitives is one well-sorted hierarchy and not many mixed ones.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <memory>
@@ -27,6 +28,19 @@ struct GeometryGroup {
   glm::mat4 world_from_object{1.0f};                 // finite and invertible
   std::shared_ptr<const DeformedVertices> deformed;  // not null: a group of one; another address is another shape
 };
+
+/// All triangles of a group in its own space, primitive by primitive: body(primitive of the group, triangle, corners).
+template <class Body>
+void for_triangles(const GeometryGroup& group, const Body& body) {
+  for (std::uint32_t p = 0; p < group.key.primitives.size(); ++p) {
+    const Primitive& primitive = *group.key.primitives[p];
+    const auto& positions = group.deformed ? group.deformed->positions : primitive.positions;
+    for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
+      const std::uint32_t* corners = &primitive.indices[std::size_t{3} * t];
+      body(p, t, std::array<glm::vec3, 3>{positions[corners[0]], positions[corners[1]], positions[corners[2]]});
+    }
+  }
+}
 
 /// Groups the instances in their order. `filtered[i]`: hits of instance i need a coverage test. Instances without a
 /// triangle or with a matrix that is not finite are left out. One that is flattened by its matrix becomes a deformed

@@ -63,7 +63,7 @@ struct PixelOrigin {
   glm::vec3 above_ws;         // origin of rays to the surface's outer side
   std::uint32_t patch_index;  // kNoPatch: it has no rays
   glm::vec3 down_ws;          // from there to the origin of rays to the inner side: those with a positive cosine to it
-  std::uint32_t padding;
+  std::uint32_t is_patch;     // 1 if the rays of the patch are the pixel's own
 };
 static_assert(sizeof(PixelOrigin) == 32);
 constexpr std::uint32_t kNoPatch = ~0u;

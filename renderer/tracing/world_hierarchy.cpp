@@ -1,7 +1,6 @@
 #include "renderer/tracing/world_hierarchy.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 
 namespace lightwell {
@@ -9,20 +8,6 @@ namespace {
 
 constexpr float kRefitAreaLimit = 2.0f;  // growth of the leaves' area after which a deformed group is sorted anew
 constexpr BvhLimits kTriangleLimits{4, 40}, kLeafLimits{1, 40};
-
-// All triangles of a group in its own space: body(instance, triangle, corners).
-template <class Body>
-void for_triangles(const GeometryGroup& group, const Body& body) {
-  for (std::uint32_t p = 0; p < group.key.primitives.size(); ++p) {
-    const Primitive& primitive = *group.key.primitives[p];
-    const auto& positions = group.deformed ? group.deformed->positions : primitive.positions;
-    for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
-      const std::uint32_t* corners = &primitive.indices[std::size_t{3} * t];
-      body(group.first_instance + p, t,
-           std::array<glm::vec3, 3>{positions[corners[0]], positions[corners[1]], positions[corners[2]]});
-    }
-  }
-}
 
 void set_triangle(WideLeaf& leaf, int place, const std::array<glm::vec3, 3>& corners_ws) {
   const glm::vec3 to_second = corners_ws[1] - corners_ws[0], to_third = corners_ws[2] - corners_ws[0];
@@ -145,12 +130,12 @@ void WorldHierarchy::place_triangles(const GeometryGroup& group, const Placed& p
       places[placed.topology->items[first + i]] = (placed.first_leaf + leaf) * kWide + i;
   }
   std::size_t item = 0;
-  for_triangles(group, [&](std::uint32_t instance, std::uint32_t triangle, std::array<glm::vec3, 3> corners) {
+  for_triangles(group, [&](std::uint32_t primitive, std::uint32_t triangle, std::array<glm::vec3, 3> corners) {
     for (glm::vec3& corner : corners) corner = glm::vec3(group.world_from_object * glm::vec4(corner, 1.0f));
     const std::uint32_t place = places[item++];
     WideLeaf& leaf = leaves_[place / kWide];
     set_triangle(leaf, static_cast<int>(place % kWide), corners);
-    leaf.instance[place % kWide] = instance;
+    leaf.instance[place % kWide] = group.first_instance + primitive;
     leaf.triangle[place % kWide] = triangle;
   });
 }

@@ -70,6 +70,7 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
+  gl::share_processors_evenly();
   try {
     return parse_and_run(argc, argv);
   } catch (const gl::NoDevice& error) {

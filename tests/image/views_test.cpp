@@ -80,6 +80,27 @@ TEST(Views, APlaneIsOnePatchBesideTheOther) {
   EXPECT_EQ(seeds, 4);
 }
 
+// A bar one pixel wide before a wall, beside the pixels that the patches of 4 x 4 trace from.
+TEST(Views, UnmatchedPixelsOfAPatchThatAreAlikeShareRays) {
+  SceneMaker maker;
+  const int white = maker.material(lambert(glm::vec3(0.8f)));
+  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, white);
+  maker.quad({0, -2, 0}, {0.0625f, 0, 0}, {0, 4, 0}, white);
+  const Scene scene = maker.take();
+  Settings settings = thesis_settings(1);
+  settings.patch = 4;
+  settings.indirect_size = 32;
+  const auto count = [&](ViewKind view) {
+    settings.view = view;
+    const Pixels pixels = render(scene, look_parallel({0, 0, 1}, {0, 0, -1}, 2.0f), settings, {32, 32});
+    int white_pixels = 0;
+    for (int y = 0; y < 32; ++y) white_pixels += pixels.at(16, y) == glm::vec3(1.0f);
+    return white_pixels;
+  };
+  EXPECT_EQ(count(ViewKind::kUnmatched), 32);
+  EXPECT_EQ(count(ViewKind::kPatch), 8) << "one seed for every four";
+}
+
 TEST(Views, CandidatesAreCountedByGroup) {
   // Of a room's twelve triangles a ray meets up to three sides' planes, and one side alone from inside.
   const Pixels shares = show(ViewKind::kCandidates, 5, 4, 4);

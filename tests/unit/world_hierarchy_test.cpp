@@ -113,37 +113,44 @@ const WideHierarchy* updated(WorldHierarchy& world, const std::vector<Instance>&
   return world.update({instances, coverage}, threads);
 }
 
-Hit as_hit(const lanes::SingleHit& hit) {
-  return {hit.t, hit.instance, hit.triangle, hit.u, hit.v};
+// What each ray of a direction meets.
+std::vector<Hit> hits_of(const lanes::PatchKernels& kernels, const WideHierarchy& hierarchy,
+                         std::span<const glm::vec3> origins, glm::vec3 direction) {
+  const auto rays = std::make_unique<lanes::ParallelRays>();
+  std::memset(rays.get(), 0, sizeof *rays);
+  rays->count = static_cast<std::uint32_t>(origins.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    rays->direction_ws[axis] = direction[axis];
+    for (std::size_t i = 0; i < origins.size(); ++i) rays->from[axis][i] = origins[i][axis];
+  }
+  kernels.nearest_hits(hierarchy, *rays);
+  std::vector<Hit> hits;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const WideLeaf& leaf = hierarchy.leaves[rays->triangle[i] / kWide];
+    const std::uint32_t which = rays->triangle[i] % kWide;
+    hits.push_back(rays->t[i] < kInfinity
+                       ? Hit{rays->t[i], leaf.instance[which], leaf.triangle[which], rays->u[i], rays->v[i]}
+                       : Hit{kMiss, 0, 0, 0.0f, 0.0f});
+  }
+  return hits;
 }
 
-class WorldHierarchyTest : public ::testing::TestWithParam<const lanes::PatchKernels*> {
- protected:
-  Hit single(const WideHierarchy& hierarchy, glm::vec3 origin, glm::vec3 direction) const {
-    const lanes::SingleRay ray{{origin.x, origin.y, origin.z}, 0.0f, {direction.x, direction.y, direction.z}, 1e30f};
-    lanes::SingleHit hit;
-    GetParam()->nearest_hits_of_single_rays(hierarchy, &ray, &hit, 1);
-    return as_hit(hit);
-  }
+class WorldHierarchyTest : public ::testing::TestWithParam<const lanes::PatchKernels*> {};
 
-  void compare_singles(const WideHierarchy& hierarchy, const std::vector<Instance>& instances) const {
-    Numbers numbers(3);
-    Comparison comparison;
-    for (int i = 0; i < 2000; ++i) {
-      const glm::vec3 origin = numbers.in_box(5.0f), direction = glm::normalize(numbers.in_box(2.0f) - origin);
-      comparison.add(single(hierarchy, origin, direction), brute_force(instances, origin, direction));
-    }
-    comparison.expect_agreement();
-  }
-};
-
-TEST_P(WorldHierarchyTest, SingleRaysMeetWhatAllTrianglesGive) {
+TEST_P(WorldHierarchyTest, ARayAloneMeetsWhatAllTrianglesGive) {
   WorldHierarchy world;
   for (const float turn : {0.0f, 0.7f, 2.0f}) {  // the same hierarchy, fitted anew
     const std::vector<Instance> instances = crowd(turn);
     const WideHierarchy* const hierarchy = updated(world, instances);
     ASSERT_NE(hierarchy, nullptr);
-    compare_singles(*hierarchy, instances);
+    Numbers numbers(3);
+    Comparison comparison;
+    for (int i = 0; i < 2000; ++i) {
+      const glm::vec3 origin = numbers.in_box(5.0f), direction = glm::normalize(numbers.in_box(2.0f) - origin);
+      comparison.add(hits_of(*GetParam(), *hierarchy, {&origin, 1}, direction)[0],
+                     brute_force(instances, origin, direction));
+    }
+    comparison.expect_agreement();
   }
 }
 
@@ -154,44 +161,26 @@ TEST_P(WorldHierarchyTest, ParallelRaysMeetWhatEachMeetsAlone) {
   ASSERT_NE(hierarchy, nullptr);
   Numbers numbers(4);
   Comparison comparison;
-  const auto rays = std::make_unique<lanes::ParallelRays>();
-  std::memset(rays.get(), 0, sizeof *rays);
-  for (const std::uint32_t count : {1u, 2u, 5u, 16u, 17u, 40u, 64u}) {
+  for (const std::size_t count : {1u, 2u, 5u, 16u, 17u, 40u, 64u}) {
     for (const float spread_m : {0.0f, 0.05f, 1.0f}) {
       const glm::vec3 direction = spread_m == 1.0f ? glm::vec3(0.0f, -1.0f, 0.0f) : numbers.direction();
       const glm::vec3 center = 1.5f * numbers.direction() - 4.0f * direction;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::vec3 origin = center + numbers.in_box(1.0f) * spread_m;
-        for (int axis = 0; axis < 3; ++axis) rays->from[axis][i] = origin[axis];
-      }
-      for (int axis = 0; axis < 3; ++axis) rays->direction_ws[axis] = direction[axis];
-      rays->count = count;
-      GetParam()->nearest_hits(*hierarchy, *rays);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t leaf = rays->triangle[i] / kWide, which = rays->triangle[i] % kWide;
-        Hit found{kMiss, 0, 0, 0.0f, 0.0f};
-        if (rays->t[i] < kInfinity)
-          found = {rays->t[i], hierarchy->leaves[leaf].instance[which], hierarchy->leaves[leaf].triangle[which],
-                   rays->u[i], rays->v[i]};
-        const glm::vec3 origin(rays->from[0][i], rays->from[1][i], rays->from[2][i]);
-        comparison.add(found, brute_force(instances, origin, direction));
-      }
+      std::vector<glm::vec3> origins(count);
+      for (glm::vec3& origin : origins) origin = center + numbers.in_box(1.0f) * spread_m;
+      const std::vector<Hit> hits = hits_of(*GetParam(), *hierarchy, origins, direction);
+      for (std::size_t i = 0; i < count; ++i) comparison.add(hits[i], brute_force(instances, origins[i], direction));
     }
   }
   comparison.expect_agreement();
 }
 
-TEST_P(WorldHierarchyTest, RaysThatAreOffOrNotFiniteMeetNothing) {
+TEST_P(WorldHierarchyTest, RaysThatAreNotFiniteMeetNothing) {
   WorldHierarchy world;
   const std::vector<Instance> instances = crowd(0.0f);
   const WideHierarchy& hierarchy = *updated(world, instances);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_LT(single(hierarchy, {nan, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}).t, 0.0f);
-  EXPECT_LT(single(hierarchy, {0.0f, 0.0f, 0.0f}, {0.0f, kInfinity, 0.0f}).t, 0.0f);
-  const lanes::SingleRay off{{0.0f, 0.0f, 0.0f}, 0.0f, {1.0f, 0.0f, 0.0f}, -1.0f};
-  lanes::SingleHit hit;
-  GetParam()->nearest_hits_of_single_rays(hierarchy, &off, &hit, 1);
-  EXPECT_LT(hit.t, 0.0f);
+  const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f), here(0.0f);
+  EXPECT_LT(hits_of(*GetParam(), hierarchy, {&nowhere, 1}, {0.0f, 1.0f, 0.0f})[0].t, 0.0f);
+  EXPECT_LT(hits_of(*GetParam(), hierarchy, {&here, 1}, {0.0f, kInfinity, 0.0f})[0].t, 0.0f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Processors, WorldHierarchyTest, ::testing::ValuesIn(lanes::usable_patch_kernels()),
@@ -232,10 +221,8 @@ TEST(WorldHierarchy, FollowsWhatDeforms) {
     Comparison comparison;
     for (int i = 0; i < 500; ++i) {
       const glm::vec3 origin = scale * numbers.in_box(2.0f), direction = numbers.direction();
-      const lanes::SingleRay ray{{origin.x, origin.y, origin.z}, 0.0f, {direction.x, direction.y, direction.z}, 1e30f};
-      lanes::SingleHit hit;
-      lanes::patch_kernels().nearest_hits_of_single_rays(*hierarchy, &ray, &hit, 1);
-      comparison.add(as_hit(hit), brute_force(rigid, origin, direction));
+      comparison.add(hits_of(lanes::patch_kernels(), *hierarchy, {&origin, 1}, direction)[0],
+                     brute_force(rigid, origin, direction));
     }
     EXPECT_GT(comparison.hits, 50);
     EXPECT_LE(comparison.different, 2);
