@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "server/operations/log.h"
-#include "server/render/device_hold.h"
+#include "server/render/seating.h"
 
 namespace lightwell {
 
@@ -26,58 +26,18 @@ class Studio {
 
   PictureSource& source() { return *source_; }
 
-  void seat(std::shared_ptr<Subject> subject, Share share, std::shared_ptr<RenderAccount> account) {
-    if (share == Share::kJobs) account = jobs_;
-    if (!account) account = RenderLoop::make_account();
-    Seat& seat = seats_.emplace_back();
-    seat.subject = std::move(subject);
-    seat.account = std::move(account);
-    seat.share = share;
-  }
-
-  void let_go_of_ended() {
-    std::erase_if(seats_, [](const Seat& seat) { return seat.subject->ended(); });
-  }
-
-  /// The seat whose turn it is, or none; `wake_at` is when one is due next, or the device has been kept long enough.
-  Seat* choose(SteadyTime now, SteadyTime& wake_at) {
-    Seat* chosen = nullptr;
-    wake_at = kNever;
-    for (Seat& seat : seats_) {
-      const SteadyTime due = seat.subject->due_at(now);
-      const bool is_due = due <= now;
-      if (is_due && !seat.was_due) {
-        seat.account->used_s = std::max(seat.account->used_s, level_s_);
-        seat.used_s = std::max(seat.used_s, seat.account->level_s);
-      }
-      seat.was_due = is_due;
-      if (!is_due)
-        wake_at = std::min(wake_at, due);
-      else if (!chosen || seat.goes_before(*chosen))
-        chosen = &seat;
-    }
-    const std::optional<SteadyTime> held_until = chosen ? hold_.until(*chosen, seats_, now) : std::nullopt;
-    is_held_ = held_until.has_value();
-    if (!is_held_) return chosen;
-    wake_at = std::min(wake_at, *held_until);
-    return nullptr;
-  }
-
-  /// Somebody wants a picture, but not yet.
-  bool is_held() const { return is_held_; }
+  Seating& seating() { return seating_; }
 
   void render(Seat& seat) {
     const SteadyTime start = steady_clock::now();
-    hold_.ends(seat, seats_, start);
-    level_s_ = std::max(level_s_, seat.account->used_s);
-    seat.account->level_s = std::max(seat.account->level_s, seat.used_s);
+    seating_.begin(seat, start);
     Result<Shot> shot = seat.subject->take_shot(start);
     Result<Frame> frame = shot ? render(*shot, seat.view) : Result<Frame>(shot.error());
     const SteadyTime end = steady_clock::now();
     const double seconds = std::chrono::duration<double>(end - start).count();
     if (shot) observer_(seat.share, frame, seconds);
     seat.subject->shot_done(std::move(frame));
-    seat.charge(seconds, end);
+    seating_.end(seat, seconds, end);
   }
 
   Result<Frame> render(const Shot& shot, std::unique_ptr<RenderView>& view) {
@@ -98,18 +58,14 @@ class Studio {
   void give_up_device(std::unique_ptr<RenderView>& view, const std::string& why) {
     log_event(LogLevel::kError, "device_lost", {{"reason", why}});
     view.reset();
-    for (Seat& seat : seats_) seat.view.reset();
+    seating_.drop_views();
     source_.reset();
   }
 
   const MakePictureSource& make_source_;
   const RenderLoop::Observer& observer_;
   std::unique_ptr<PictureSource> source_;  // null after the device was lost, until the next frame
-  std::vector<Seat> seats_;                // their views go before the source
-  std::shared_ptr<RenderAccount> jobs_ = std::make_shared<RenderAccount>();
-  DeviceHold hold_;
-  bool is_held_ = false;
-  double level_s_ = 0.0;  // the account of who was served last: the least of those that wait
+  Seating seating_;                        // their views go before the source
 };
 
 }  // namespace
@@ -164,16 +120,16 @@ void RenderLoop::State::serve(Studio& studio, Shot warm_up) {
       if (stopping) return;
       woken = false;
       for (Arrival& arrival : arrivals)
-        studio.seat(std::move(arrival.subject), arrival.share, std::move(arrival.account));
+        studio.seating().add(std::move(arrival.subject), arrival.share, std::move(arrival.account));
       arrivals.clear();
     }
-    studio.let_go_of_ended();
+    studio.seating().let_go_of_ended();
     SteadyTime wake_at = kNever;
-    if (Seat* seat = studio.choose(steady_clock::now(), wake_at)) {
+    if (Seat* seat = studio.seating().choose(steady_clock::now(), wake_at)) {
       studio.render(*seat);
       continue;
     }
-    const bool may_warm_up = warmed_up < sizes.size() && !studio.is_held();
+    const bool may_warm_up = warmed_up < sizes.size() && !studio.seating().is_held();
     if (may_warm_up) wake_at = std::min(wake_at, warm_up_from);
     if (may_warm_up && steady_clock::now() >= warm_up_from) {  // and nobody waits for a picture
       warm_up.request.size_px = sizes[warmed_up++];

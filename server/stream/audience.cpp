@@ -4,6 +4,11 @@
 #include <atomic>
 
 namespace lightwell {
+namespace {
+
+constexpr int kMostInTheMaking = 2;  // one is rendered while another is encoded
+
+}  // namespace
 
 Audience::Audience()
     : source_([] {
@@ -42,10 +47,9 @@ std::size_t Audience::size() const {
 }
 
 bool Audience::wants_picture(int in_the_making) const {
+  if (in_the_making >= kMostInTheMaking) return false;
   const auto all = spectators();
-  return std::any_of(all.begin(), all.end(), [&](const auto& viewer) {
-    return viewer->watching() && viewer->pictures_on_the_way() + in_the_making < kMostInFlight;
-  });
+  return std::any_of(all.begin(), all.end(), [&](const auto& viewer) { return viewer->takes_another(in_the_making); });
 }
 
 LinkPace Audience::pace() const {

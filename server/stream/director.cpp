@@ -94,7 +94,7 @@ std::function<bool()> Director::gives_way_to_inputs() const {
 PictureGrade Director::choose_grade() {
   const LinkPace pace = session_->audience().pace();
   std::lock_guard lock(grader_mutex_);
-  return grader_.choose(pace.budget_bytes(), pace.bytes_per_s());
+  return grader_.choose(pace);
 }
 
 /// The very same again, added to what is there; from the beginning if that was smaller than asked for. Pictures are

@@ -16,7 +16,6 @@ constexpr double kReserve = 0.9;        // of what would just have come in time
 constexpr double kGrowth = 1.05;        // for each picture in time
 constexpr double kLeastBytes = 1024.0;
 constexpr double kMostAhead = 4.0;  // times the picture that came in time: beyond, nothing is known
-constexpr int kOnTheWay = 2;
 
 }  // namespace
 
@@ -26,14 +25,20 @@ double LinkPace::bytes_per_s() const {
   return rates_.empty() ? 0.0 : *std::max_element(rates_.begin(), rates_.end());
 }
 
+/// From when the narrow place was free for each, if all went through it one after the other at the rate known.
 double LinkPace::base_delay_s() const {
   const double rate = bytes_per_s();
-  double least_s = kUnbounded;
+  double least_s = kUnbounded, free_s = 0.0;
   for (const Arrival& arrival : arrivals_) {
-    const double transfer_s = rate > 0.0 ? arrival.bytes_on_the_way / rate : 0.0;
-    least_s = std::min(least_s, std::max(arrival.delay_s - transfer_s, 0.0));
+    free_s = std::max(free_s, arrival.sent_s) + (rate > 0.0 ? arrival.bytes / rate : 0.0);
+    least_s = std::min(least_s, std::max(arrival.delay_s - (free_s - arrival.sent_s), 0.0));
   }
   return arrivals_.empty() ? 0.0 : least_s;
+}
+
+double LinkPace::least_delay_s() const {
+  const auto by_delay = [](const Arrival& a, const Arrival& b) { return a.delay_s < b.delay_s; };
+  return arrivals_.empty() ? 0.0 : std::min_element(arrivals_.begin(), arrivals_.end(), by_delay)->delay_s;
 }
 
 double LinkPace::too_late_s() const {
@@ -45,6 +50,7 @@ void LinkPace::arrived(const Arrival& arrival) {
   if (rates_.size() > kRates) rates_.pop_front();
   arrivals_.push_back(arrival);
   if (arrivals_.size() > kArrivals) arrivals_.pop_front();
+  window_.arrived(arrival.bytes, arrival.sent_s + arrival.delay_s, arrival.delay_s);
   if (to_ignore_ > 0) {
     --to_ignore_;
     return;
@@ -53,7 +59,7 @@ void LinkPace::arrived(const Arrival& arrival) {
   if (arrival.delay_s > too_late_s) {
     const double in_time = arrival.bytes * (too_late_s - base_s) / (arrival.delay_s - base_s);
     budget_bytes_ = std::max(std::min(budget_bytes_, in_time) * kReserve, kLeastBytes);
-    to_ignore_ = kOnTheWay;
+    to_ignore_ = most_on_the_way();
   } else if (budget_bytes_ < kMostAhead * arrival.bytes) {
     budget_bytes_ *= kGrowth;
   }

@@ -1,18 +1,20 @@
-// How large a picture may be to arrive in time over one viewer's link, learned from how long pictures took to be
-// acknowledged. Pure: times come from outside.
+// How large a picture may be to arrive in time over one viewer's link, and how many may be on their way, learned from
+// how long pictures took to be acknowledged. Pure: times come from outside.
 #pragma once
 
 #include <cstddef>
 #include <deque>
+
+#include "server/stream/send_window.h"
 
 namespace lightwell {
 
 /// One picture that was acknowledged.
 struct Arrival {
   double bytes = 0.0;
-  double bytes_on_the_way = 0.0;  // when it was sent: its own, and those of pictures not acknowledged then
-  double delay_s = 0.0;           // from its being sent to its acknowledgement
-  double gap_s = 0.0;             // since the acknowledgement before it, if it was on the way then; else 0
+  double sent_s = 0.0;   // by a clock that all arrivals share
+  double delay_s = 0.0;  // from its being sent to its acknowledgement
+  double gap_s = 0.0;    // since the acknowledgement before it, if it was on the way then; else 0
 };
 
 /// The budget shrinks at once when a picture comes too late, to what would have come in time, and grows slowly while
@@ -29,6 +31,10 @@ class LinkPace {
   double bytes_per_s() const;
   /// The delay of a picture of no bytes on an empty link.
   double base_delay_s() const;
+  /// The shortest of the last delays: of a picture that waited for no other; 0: not known.
+  double least_delay_s() const;
+  /// So many pictures may be on the way.
+  int most_on_the_way() const { return window_.pictures(); }
 
  private:
   double too_late_s() const;
@@ -37,6 +43,7 @@ class LinkPace {
   std::deque<Arrival> arrivals_;  // the last
   double budget_bytes_;
   int to_ignore_ = 0;  // arrivals of pictures that were on the way when the budget shrank
+  SendWindow window_;
 };
 
 }  // namespace lightwell

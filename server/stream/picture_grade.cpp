@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace lightwell {
 namespace {
@@ -15,15 +14,16 @@ struct Step {
 constexpr std::array<Step, 8> kSteps{
     {{100, 1.0}, {85, 1.0}, {70, 1.0}, {55, 1.0}, {55, 0.75}, {55, 0.5}, {50, 0.35}, {50, 0.25}}};
 
-constexpr double kMemory = 0.7;          // of the sizes before the last one
-constexpr double kBackUpBelow = 0.75;    // of the budget: less is given up again only with room to spare
-constexpr double kSlowRenderS = 0.15;    // a moving picture that takes longer gives up resolution,
-constexpr double kWantedRenderS = 0.12;  // to take no longer than this,
-constexpr double kQuickRenderS = 0.08;   // and gets it back when it would take less than this at the next step up
+constexpr double kMemory = 0.7;        // of the sizes before the last one
+constexpr double kBackUpBelow = 0.75;  // of the budget: less is given up again only with room to spare
+// A moving picture that takes longer to render than this gives up resolution. On a link with a delay it is less: an
+// input waits for one picture, is rendered in the next, and is to be seen in time.
+constexpr double kSlowRenderS = 0.15, kLeastSlowRenderS = 0.06, kInTimeS = 0.35;
+constexpr double kWantedShare = 0.8;  // of that: then it takes no longer,
+constexpr double kQuickShare = 0.7;   // and gets resolution back when it would take less than this at the next step up
 constexpr double kLeastRenderScale = 0.5;
 constexpr double kRenderScaleStep = 1.25;
 constexpr double kShareOfLink = 0.8;
-constexpr std::size_t kRenderTimes = 3;
 
 /// Bytes of a JPEG file at a quality against those at 80; measured on rendered scenes at 512 x 512.
 double relative_bytes(double quality) {
@@ -51,16 +51,7 @@ void PictureGrader::made(const PictureGrade& grade, double bytes, double render_
   const double area = grade.scale * grade.scale;
   const double share = area * relative_bytes(grade.quality) / relative_bytes(full_quality_);
   full_bytes_ = full_bytes_ > 0.0 ? std::lerp(bytes / share, full_bytes_, kMemory) : bytes / share;
-  full_render_s_.push_back(render_s / area);
-  if (full_render_s_.size() > kRenderTimes) full_render_s_.pop_front();
-}
-
-/// The median; 0 while there are too few.
-double PictureGrader::usual_render_s() const {
-  if (full_render_s_.size() < kRenderTimes) return 0.0;
-  std::vector<double> sorted(full_render_s_.begin(), full_render_s_.end());
-  std::sort(sorted.begin(), sorted.end());
-  return sorted[kRenderTimes / 2];
+  render_cost_.rendered(area, render_s);
 }
 
 int PictureGrader::level_for(double budget_bytes) const {
@@ -75,22 +66,25 @@ int PictureGrader::level_for(double budget_bytes) const {
   return level;
 }
 
-double PictureGrader::scale_for_rendering() const {
-  const double full_s = usual_render_s();
-  const double now_s = full_s * render_scale_ * render_scale_;
-  if (now_s > kSlowRenderS) return std::max(kLeastRenderScale, render_scale_ * std::sqrt(kWantedRenderS / now_s));
+double PictureGrader::scale_for_rendering(double delay_s) const {
+  const double slow_s = std::clamp((kInTimeS - delay_s) / 2.0, kLeastSlowRenderS, kSlowRenderS);
+  if (render_cost_.seconds_at(render_scale_ * render_scale_) > slow_s) {
+    const double area = render_cost_.area_for(kWantedShare * slow_s);
+    return std::clamp(std::sqrt(std::max(area, 0.0)), kLeastRenderScale, render_scale_);
+  }
   const double next = std::min(render_scale_ * kRenderScaleStep, 1.0);
-  return full_s * next * next < kQuickRenderS ? next : render_scale_;
+  return render_cost_.seconds_at(next * next) < kQuickShare * slow_s ? next : render_scale_;
 }
 
-PictureGrade PictureGrader::choose(double budget_bytes, double bytes_per_s) {
-  level_ = level_for(budget_bytes);
-  render_scale_ = scale_for_rendering();
+PictureGrade PictureGrader::choose(const LinkPace& pace) {
+  level_ = level_for(pace.budget_bytes());
+  render_scale_ = scale_for_rendering(pace.least_delay_s());
   const Step& step = kSteps[static_cast<std::size_t>(level_)];
   PictureGrade grade;
   grade.quality = std::max(static_cast<int>(std::lround(full_quality_ * step.quality_percent / 100.0)), 1);
   grade.scale = std::min(step.scale, render_scale_);
   const bool all_given_up = level_ + 1 == static_cast<int>(kSteps.size());
+  const double bytes_per_s = pace.bytes_per_s();
   if (all_given_up && bytes_per_s > 0.0) {
     const double share = grade.scale * grade.scale * relative_bytes(grade.quality) / relative_bytes(full_quality_);
     const double seconds = full_bytes_ * share / (bytes_per_s * kShareOfLink);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <glm/glm.hpp>
+
+#include "server/stream/link_pace.h"
+#include "server/stream/render_cost.h"
 
 namespace lightwell {
 
@@ -25,19 +27,18 @@ class PictureGrader {
   /// A moving picture of the full size times `grade.scale` was rendered and encoded.
   void made(const PictureGrade& grade, double bytes, double render_s);
 
-  /// For a link on which `budget_bytes` arrive in time and that carries `bytes_per_s` (0: not known).
-  PictureGrade choose(double budget_bytes, double bytes_per_s);
+  /// For what a link takes.
+  PictureGrade choose(const LinkPace& pace);
 
  private:
   int level_for(double budget_bytes) const;
-  double scale_for_rendering() const;
-  double usual_render_s() const;
+  double scale_for_rendering(double delay_s) const;
 
   const int full_quality_;
-  double full_bytes_ = 0.0;           // of a picture with nothing given up; 0: none was made
-  std::deque<double> full_render_s_;  // times to render one, the last three: a shader that is new is slow only once
-  int level_ = 0;                     // what is given up for the link, in steps
-  double render_scale_ = 1.0;         // and for rendering
+  double full_bytes_ = 0.0;  // of a picture with nothing given up; 0: none was made
+  RenderCost render_cost_;
+  int level_ = 0;              // what is given up for the link, in steps
+  double render_scale_ = 1.0;  // and for rendering
 };
 
 }  // namespace lightwell

@@ -198,7 +198,7 @@ PictureNeed Viewer::need() const {
   PictureNeed need;
   need.jpeg = !has_video_;
   need.video = has_video_;
-  need.key = has_video_ && video_index_ == 0 && in_flight_.size() < kMostInFlight;  // else it could not be sent now
+  need.key = has_video_ && video_index_ == 0 && has_room();  // else it could not be sent now
   return need;
 }
 
@@ -219,9 +219,10 @@ void Viewer::end(protocol::CloseCode code, const std::string& reason, bool recon
   queue_end(code, reason, reconnect);
 }
 
-int Viewer::pictures_on_the_way() const {
+bool Viewer::takes_another(int in_the_making) const {
   std::lock_guard lock(mutex_);
-  return static_cast<int>(in_flight_.size()) + (waiting_ ? 1 : 0);
+  const int there = static_cast<int>(in_flight_.size()) + (waiting_ ? 1 : 0) + in_the_making;
+  return stage_ == Stage::kWatching && there < pace_.most_on_the_way();
 }
 
 LinkPace Viewer::pace() const {

@@ -18,8 +18,6 @@
 
 namespace lightwell {
 
-inline constexpr int kMostInFlight = 2;  // pictures sent and not acknowledged
-
 class Viewer;
 
 /// What a viewer asks of its session. Called without the viewer's lock.
@@ -76,8 +74,8 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
   /// What its link takes, as its acknowledgements tell.
   LinkPace pace() const;
   bool drives() const;
-  /// Pictures that are on their way to the client, or wait to be.
-  int pictures_on_the_way() const;
+  /// Whether it watches, and one more picture may be on its way, or wait to be, than are and those in the making.
+  bool takes_another(int in_the_making) const;
   bool watching() const;
   bool may_drive() const { return may_drive_; }
   const std::string& resume_token() const { return resume_token_; }
@@ -90,7 +88,6 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
     std::uint32_t frame;
     SteadyTime at;
     double bytes = 0.0;
-    double bytes_on_the_way = 0.0;  // with those before it
   };
   struct AppliedInput {
     std::uint64_t revision;
@@ -110,6 +107,7 @@ class Viewer : public net::WebSocketHandler, public std::enable_shared_from_this
   void bad_message(const std::string& reason);
 
   // With the lock held.
+  bool has_room() const;
   bool may_send_picture() const;
   void queue_text(const protocol::ServerMessage& message);
   void queue_end(protocol::CloseCode code, const std::string& reason, bool reconnect);

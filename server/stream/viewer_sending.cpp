@@ -37,8 +37,13 @@ net::Outgoing Viewer::next() {
   return take_picture();
 }
 
+/// For a picture on the way.
+bool Viewer::has_room() const {
+  return static_cast<int>(in_flight_.size()) < pace_.most_on_the_way();
+}
+
 bool Viewer::may_send_picture() const {
-  return waiting_ && stage_ == Stage::kWatching && in_flight_.size() < kMostInFlight;
+  return waiting_ && stage_ == Stage::kWatching && has_room();
 }
 
 void Viewer::wake() {
@@ -100,9 +105,7 @@ net::Outgoing Viewer::take_picture() {
   header.height = picture->height;
   header.payload_bytes = static_cast<std::uint32_t>(payload->size());
   header.render_ms = static_cast<float>(picture->stats.render_ms);
-  const auto bytes_sent = static_cast<double>(payload->size());
-  const double before = in_flight_.empty() ? 0.0 : in_flight_.back().bytes;
-  in_flight_.push_back({last_frame_, now, bytes_sent, before + bytes_sent});
+  in_flight_.push_back({last_frame_, now, static_cast<double>(payload->size())});
   sent_times_.push_back(now);
   queue_stats(*picture, now);
   host_->picture_sent(as_video ? PictureCodec::kH264 : PictureCodec::kJpeg, payload->size());
@@ -115,7 +118,8 @@ void Viewer::note_arrival(const Sent& sent, const protocol::Ack& ack, SteadyTime
   host_->picture_acknowledged(seconds_since(sent.at));
   if (!ack.held_ms) {
     const double gap_s = sent.at < last_arrival_ ? seconds_since(last_arrival_) : 0.0;
-    pace_.arrived({sent.bytes, sent.bytes_on_the_way, seconds_since(sent.at), gap_s});
+    const double sent_s = std::chrono::duration<double>(sent.at.time_since_epoch()).count();
+    pace_.arrived({sent.bytes, sent_s, seconds_since(sent.at), gap_s});
   }
   last_arrival_ = now;
 }

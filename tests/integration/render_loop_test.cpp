@@ -78,36 +78,6 @@ TEST(RenderLoop, GivesEverySessionItsShareAndAllRequestsOneTogether) {
   EXPECT_LE(std::abs(light->used_s - of_requests_s), 2.0 * longest_s);
 }
 
-/// Short pictures, the next of which is wanted a moment after the last, as soon as the client has acknowledged it.
-class Acknowledged : public Greedy {
- public:
-  using Greedy::Greedy;
-  SteadyTime due_at(SteadyTime) override { return done_at_ + std::chrono::milliseconds(2); }
-  void shot_done(Result<Frame> frame) override {
-    Greedy::shot_done(std::move(frame));
-    done_at_ = steady_clock::now();
-    ++pictures;
-  }
-  int pictures = 0;
-
- private:
-  SteadyTime done_at_{};
-};
-
-TEST(RenderLoop, ALightSessionThatWaitsForItsClientHasHalfOfTheTimeBesideAHeavyOne) {
-  const auto loop = fake_loop();
-  const auto light = std::make_shared<Acknowledged>(1);
-  const auto heavy = std::make_shared<Greedy>(60);
-  loop->add(light, Share::kOwn);
-  loop->add(heavy, Share::kOwn);
-  EXPECT_TRUE(comes_true([&] { return heavy->used_s > 1.5; }));
-  loop->stop();
-  const double heavy_pictures = heavy->used_s / 0.06;
-  std::printf("%.1f light pictures for a heavy one\n", light->pictures / heavy_pictures);
-  EXPECT_GT(light->pictures, 3.0 * heavy_pictures);  // one each, were the device not kept free
-  EXPECT_LT(light->used_s, heavy->used_s + 2.0 * heavy->longest_s);
-}
-
 TEST(RenderLoop, ALookOfOnesOwnTakesFromItsSessionsShare) {
   const auto loop = fake_loop();
   const auto account = RenderLoop::make_account();
