@@ -112,7 +112,7 @@ void RenderLoop::State::run(const MakePictureSource& make_source, const std::fun
 
 void RenderLoop::State::serve(Studio& studio, Shot warm_up) {
   const std::vector<glm::ivec2> sizes = studio.source().sizes_to_warm_up();
-  const SteadyTime warm_up_from = steady_clock::now() + kBeforeWarmingUpMore;
+  SteadyTime warm_up_from = steady_clock::now() + kBeforeWarmingUpMore;
   std::size_t warmed_up = 0;
   for (;;) {
     {
@@ -127,6 +127,7 @@ void RenderLoop::State::serve(Studio& studio, Shot warm_up) {
     SteadyTime wake_at = kNever;
     if (Seat* seat = studio.seating().choose(steady_clock::now(), wake_at)) {
       studio.render(*seat);
+      warm_up_from = steady_clock::now() + kBeforeWarmingUpMore;  // an input would wait for shaders to be compiled
       continue;
     }
     const bool may_warm_up = warmed_up < sizes.size() && !studio.seating().is_held();

@@ -22,7 +22,7 @@ class RenderLoop {
   using Observer = std::function<void(Share share, const Result<Frame>& frame, double seconds)>;
 
   /// Starts the thread, which makes the source and renders what `warm_up` gives once. `ready` tells when that is done.
-  /// Some seconds later, when nobody wants a picture, the same follows in the source's other sizes to warm up.
+  /// When nobody has wanted a picture for some seconds, the same follows in the source's other sizes to warm up.
   RenderLoop(MakePictureSource make_source, std::function<Shot()> warm_up, Observer observer);
   ~RenderLoop();  // stops
   RenderLoop(const RenderLoop&) = delete;
