@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "renderer/check.h"
+#include "renderer/lanes/choose.h"
 #include "renderer/methods/realtime.h"
 #include "renderer/methods/reference.h"
 #include "renderer/methods/thesis.h"
@@ -140,10 +141,10 @@ std::unique_ptr<Tracer> make_tracer(const RendererOptions& options, bool softwar
   return native ? options.make_native_tracer() : make_compute_tracer();
 }
 
-// A GPU's rasteriser is quicker than any processor's rays.
-ViewTracing choose_view_tracing(SeenBy seen_by, Tracer& tracer, bool software) {
-  if (seen_by == SeenBy::kRasterizer || (seen_by == SeenBy::kQuicker && !software)) return {};
-  return {tracer.views(), seen_by == SeenBy::kRays};
+// A GPU is quicker than any processor.
+std::unique_ptr<ViewRasterizer> make_view_rasterizer(SeenBy seen_by, Tracer& tracer, bool software) {
+  if (!tracer.host() || seen_by == SeenBy::kDevice || (seen_by == SeenBy::kQuicker && !software)) return nullptr;
+  return std::make_unique<ViewRasterizer>(*tracer.host(), lanes::view_kernels());
 }
 
 }  // namespace
@@ -155,7 +156,8 @@ struct Renderer::State {
         tracer(make_tracer(options, context->device().software)),
         triangle_groups([options, software = context->device().software] { return make_tracer(options, software); }),
         buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
-        view_tracing(choose_view_tracing(options.seen_by, *tracer, context->device().software)),
+        view_rasterizer(make_view_rasterizer(options.seen_by, *tracer, context->device().software)),
+        view_choice{view_rasterizer.get(), options.seen_by == SeenBy::kProcessor},
         device_scene(buffers),
         camera("camera", sizeof(CameraBlock)) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -173,7 +175,8 @@ struct Renderer::State {
   std::unique_ptr<Tracer> tracer;
   TriangleGroups triangle_groups;
   gl::BufferUse buffers;
-  ViewTracing view_tracing;
+  std::unique_ptr<ViewRasterizer> view_rasterizer;  // null: the device draws all
+  ViewChoice view_choice;
   DeviceScene device_scene;
   gl::Buffer camera;
   EnvironmentBlock environment;
@@ -252,6 +255,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
     const TraceScene trace_scene{pose.instances, coverage};
     state_->tracer->update(trace_scene);
+    if (state_->view_rasterizer) state_->view_rasterizer->update(trace_scene);
     view.accumulated = request.accumulate ? view.accumulated : 0;
     const Method method = method_of(request.settings);
     Settings settings = request.settings;
@@ -276,7 +280,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
                          state_->triangle_groups,
                          trace_scene,
                          state_->timer,
-                         {camera, state_->view_tracing}};
+                         {camera, state_->view_choice}};
     const Picture& made = method == Method::kReference ? view.reference().render(context, scene)
                           : method == Method::kRealtime
                               ? view.realtime().render(context, scene, request.camera, jitter_px)
@@ -288,6 +292,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     frame.accumulated = picture.accumulated;
     frame.rays = context.rays;
     frame.triangles = state_->device_scene.triangles();
+    if (state_->view_rasterizer) frame.views_by_processor = state_->view_rasterizer->views_drawn();
   } catch (const gl::FrameUnwanted&) {
     view.accumulated = 0;
     return Error{ErrorKind::kUnwanted, "frame", "it was wanted no more"};

@@ -56,10 +56,10 @@ enum class ToneMap { kNeutral, kLinear };
 /// one of the two alone. All have the same mean.
 enum class LightStrategy { kBoth, kLights, kRays };
 
-/// How what cameras and shadow maps see is found. On a software device with the native tracer rays are quicker where
-/// triangles are many for the pixels; all else is rasterised. The other two, for comparing them: always the one, and
-/// the other wherever it can be.
-enum class SeenBy { kQuicker, kRasterizer, kRays };
+/// Who finds what cameras and shadow maps see. With the native tracer the processor is quicker than a software device
+/// where triangles are many for the pixels. The other two, for comparing them: always the device, and the processor
+/// wherever it can.
+enum class SeenBy { kQuicker, kDevice, kProcessor };
 
 /// Settings::bounces of `--bounces inf`: paths end by chance alone. `reference` and `realtime`; for the latter 3 and
 /// more are the same, since its radiance cache carries all further bounces.
@@ -165,6 +165,7 @@ struct Frame {
   double total_ms = 0.0;
   std::uint64_t rays = 0;  // traced, those among them that candidates missed and that were traced anew
   std::uint64_t triangles = 0;
+  std::uint32_t views_by_processor = 0;  // of what camera and shadow maps see; the device draws the others
 };
 
 /// What one viewer's pictures share over time: images of its size, exposure, history. Made by a Renderer,

@@ -12,6 +12,11 @@
 
 #include <cstdint>
 
+// The name of a table of functions: k<kind of processor><kernels>.
+#define LIGHTWELL_LANES_JOIN(prefix, kernels) prefix##kernels
+#define LIGHTWELL_LANES_NAME(prefix, kernels) LIGHTWELL_LANES_JOIN(prefix, kernels)
+#define LIGHTWELL_LANES_TABLE(kernels) LIGHTWELL_LANES_NAME(LIGHTWELL_LANES_PREFIX, kernels)
+
 namespace lightwell {
 namespace {
 

@@ -1,4 +1,4 @@
-// Compiled once for each kind of processor, LIGHTWELL_LANES_NAME being the table's name.
+// Compiled once for each kind of processor, LIGHTWELL_LANES_PREFIX being what the table's name begins with.
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
@@ -291,8 +291,8 @@ constexpr const char* kInstructions = "plain";
 
 }  // namespace
 
-extern const PatchKernels LIGHTWELL_LANES_NAME;
-const PatchKernels LIGHTWELL_LANES_NAME = {kInstructions,  unpack,       start_rays, meet,
-                                           collect_missed, nearest_hits, gather,     gather_scattered};
+extern const PatchKernels LIGHTWELL_LANES_TABLE(PatchKernels);
+const PatchKernels LIGHTWELL_LANES_TABLE(PatchKernels) = {kInstructions,  unpack,       start_rays, meet,
+                                                          collect_missed, nearest_hits, gather,     gather_scattered};
 
 }  // namespace lightwell::lanes

@@ -3,7 +3,7 @@
 
 #include "renderer/gl/stage_timer.h"
 #include "renderer/passes/device_scene.h"
-#include "renderer/passes/view_tracing.h"
+#include "renderer/passes/view_choice.h"
 #include "renderer/renderer.h"
 #include "renderer/tracing/tracer.h"
 #include "renderer/tracing/triangle_groups.h"

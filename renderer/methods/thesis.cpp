@@ -89,7 +89,7 @@ const Picture& ThesisMethod::render_layers(FrameContext& frame) {
   const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + frame.frame_number,
                                                nullptr, clear ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
   frame.timer.mark("g-buffer");
-  const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose, frame.camera.tracing);
+  const ShadowMaps& shadows = shadow_maps_pass_.run(frame.scene, frame.pose, frame.camera.choice);
   frame.timer.mark("shadow maps");
   const IndirectMap& indirect = indirect_light(frame, g_buffer, shadows, grid);
   const bool layered = clear && shows_clear_surfaces(frame.settings.view);

@@ -33,7 +33,7 @@ GBufferPass::GBufferPass(gl::ShaderLibrary& shaders)
     : variants_([&shaders](const gl::Defines& defines) {
         return shaders.raster("passes/g_buffer.vert", "passes/g_buffer.frag", defines);
       }),
-      traced_variants_([&shaders](const gl::Defines& defines) {
+      hit_variants_([&shaders](const gl::Defines& defines) {
         return shaders.raster("passes/full_screen_camera.vert", "passes/g_buffer.frag", defines);
       }) {}
 
@@ -77,15 +77,15 @@ const GBuffer& GBufferPass::run(const DeviceScene& scene, const CameraView& came
     defines.emplace_back("MOTION 1");
     if (motion->deforming()) defines.emplace_back("DEFORMED_MOTION 1");
   }
-  ViewTracer* tracer = layer == GBufferLayer::kAll ? camera.tracing.for_view(scene, buffer_.size_px()) : nullptr;
-  if (tracer) find_hits(*tracer, camera.block);
+  ViewRasterizer* rasterizer = layer == GBufferLayer::kAll ? camera.choice.for_view(scene, buffer_.size_px()) : nullptr;
+  if (rasterizer) find_hits(*rasterizer, camera.block);
   const gl::Framebuffer& framebuffer = framebuffer_of(scene.has_lobes(), buffer_.has_motion);
   framebuffer.bind();
   const GLfloat nothing_there = 0.0f;  // where it stays, nobody looks at the other textures
   glClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &nothing_there);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  if (tracer)
+  if (rasterizer)
     draw_hits(std::move(defines));
   else
     rasterize(scene, defines, seed);
@@ -109,19 +109,19 @@ void GBufferPass::rasterize(const DeviceScene& scene, const gl::Defines& defines
   glDisable(GL_CULL_FACE);
 }
 
-void GBufferPass::find_hits(ViewTracer& tracer, const CameraBlock& camera) {
+void GBufferPass::find_hits(ViewRasterizer& rasterizer, const CameraBlock& camera) {
   const glm::ivec2 size_px = buffer_.size_px();
   const std::uint64_t bytes =
       static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y) * sizeof(Hit);
   constexpr std::uint64_t kTexelBytes = 16;  // the last hit's second texel may begin behind it
   if (hits_.reserve(bytes + kTexelBytes)) hit_texels_.attach(hits_);
-  tracer.camera_hits(camera_rays(camera), hits_);
+  rasterizer.camera_hits(camera_rays(camera), hits_);
 }
 
 void GBufferPass::draw_hits(gl::Defines defines) {
-  defines.emplace_back("TRACED 1");
+  defines.emplace_back("FROM_HITS 1");
   hit_texels_.bind(UNIT_HITS);
-  traced_variants_.with(defines)->use();
+  hit_variants_.with(defines)->use();
   full_screen_.draw_full_screen();
 }
 

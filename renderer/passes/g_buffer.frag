@@ -1,6 +1,6 @@
 // BEHIND_CLEAR: without clear surfaces, as if they were not there. CLEAR_ALONE: these alone, where they are before the rest;
-// what they let through is in the other layer. TRACED: of the nearest hits of the pixels' rays, not of the rasteriser.
-#ifdef TRACED
+// what they let through is in the other layer. FROM_HITS: of the nearest hits of the pixels' rays, which the processor has found.
+#ifdef FROM_HITS
 #define FLAT_CAMERA
 #endif
 #include "passes/bindings.glsl"
@@ -16,7 +16,7 @@
 #ifdef HAS_LOBES
 #include "shaders/lobes.glsl"
 #endif
-#ifdef TRACED
+#ifdef FROM_HITS
 #include "shaders/ray.glsl"
 #include "shaders/fetch_hit.glsl"
 #endif
@@ -110,7 +110,7 @@ void main() {
 #ifdef MOTION
   out_motion = vec4(seen.displacement_ws, 0.0);
 #endif
-#ifdef TRACED
+#ifdef FROM_HITS
   gl_FragDepth = depth_of_view(seen.view_depth_m);
 #endif
   const float kLargestHalf = 65504.0;

@@ -5,7 +5,7 @@
 #include "renderer/gl/texture.h"
 #include "renderer/passes/device_scene.h"
 #include "renderer/passes/instance_motion.h"
-#include "renderer/passes/view_tracing.h"
+#include "renderer/passes/view_choice.h"
 
 namespace lightwell {
 
@@ -46,10 +46,10 @@ class GBufferPass {
   };
   const gl::Framebuffer& framebuffer_of(bool lobes, bool motion);
   void rasterize(const DeviceScene& scene, const gl::Defines& defines, std::uint32_t seed);
-  void find_hits(ViewTracer& tracer, const CameraBlock& camera);
+  void find_hits(ViewRasterizer& rasterizer, const CameraBlock& camera);
   void draw_hits(gl::Defines defines);
   gl::Variants<Variant> variants_;
-  gl::Variants<gl::ProgramPtr> traced_variants_;
+  gl::Variants<gl::ProgramPtr> hit_variants_;
   gl::Buffer hits_{"hits of the camera's rays", 0, gl::BufferUse::kHostVisible};
   gl::BufferTexture hit_texels_{"hits of the camera's rays", GL_RGBA32UI};
   gl::EmptyVertexArray full_screen_;

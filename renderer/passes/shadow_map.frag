@@ -1,4 +1,4 @@
-// The moments of depth that a light sees: of the rasterised surface, or (TRACED) of what the texel's ray met.
+// The moments of depth that a light sees: of the rasterised surface, or (FROM_DEPTHS) of what the processor has found.
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
@@ -15,7 +15,7 @@ layout(location = 0) out vec2 out_moments;
 // The second moment takes in the slope of the surface within the texel: Donnelly and Lauritzen 2006, section 4.1.
 vec2 moments_of(float depth, float slope2) { return vec2(depth, depth * depth + 0.25 * slope2); }
 
-#ifdef TRACED
+#ifdef FROM_DEPTHS
 layout(binding = UNIT_VIEW_DEPTHS) uniform samplerBuffer view_depths;  // ViewDepth
 uniform int side_px;
 

@@ -137,8 +137,8 @@ ShadowMapsPass::ShadowMapsPass(gl::ShaderLibrary& shaders)
       covered_(shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1"})),
       tinted_(
           shaders.raster("passes/shadow_map.vert", "passes/shadow_map.frag", {"HAS_TEXTURES 1", "TINTED_SHADOWS 1"})),
-      traced_(shaders.raster("passes/full_screen.vert", "passes/shadow_map.frag", {"TRACED 1"})),
-      traced_side_(traced_, "side_px"),
+      from_depths_(shaders.raster("passes/full_screen.vert", "passes/shadow_map.frag", {"FROM_DEPTHS 1"})),
+      from_depths_side_(from_depths_, "side_px"),
       tints_pass_(shaders),
       filter_program_(shaders.raster("passes/full_screen.vert", "passes/shadow_filter.frag")),
       filter_direction_(filter_program_, "direction"),
@@ -235,7 +235,7 @@ void ShadowMapsPass::draw(const DeviceScene& scene, const LightView& view) {
   glDisable(GL_DEPTH_TEST);
 }
 
-void ShadowMapsPass::trace(ViewTracer& tracer, const LightView& view) {
+void ShadowMapsPass::draw_by_processor(ViewRasterizer& rasterizer, const LightView& view) {
   const int side = raw_.size_px().x;
   const auto texels = static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
   if (depths_.reserve(texels * sizeof(ViewDepth))) depth_texels_.attach(depths_);
@@ -243,12 +243,12 @@ void ShadowMapsPass::trace(ViewTracer& tracer, const LightView& view) {
   const bool placed = far_m > 0.0f;
   ViewRays rays = light_rays(view.clip_from_world, placed, glm::vec3(view.position_far), side);
   if (placed) rays.t_min = kNearShare;
-  tracer.depths(rays, placed ? DepthMeasure::kDistance : DepthMeasure::kAlongView, placed ? 1.0f / far_m : 1.0f,
-                depths_);
+  rasterizer.depths(rays, placed ? DepthMeasure::kDistance : DepthMeasure::kAlongView, placed ? 1.0f / far_m : 1.0f,
+                    depths_);
   raw_framebuffer_.bind();
   depth_texels_.bind(UNIT_VIEW_DEPTHS);
-  traced_side_ = side;
-  traced_->use();
+  from_depths_side_ = side;
+  from_depths_->use();
   full_screen_.draw_full_screen();
 }
 
@@ -276,15 +276,15 @@ void ShadowMapsPass::filter_into(int layer) {
   filter_pass(half_[1], target, {0, 1}, radius);
 }
 
-const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose, const ViewTracing& tracing) {
+const ShadowMaps& ShadowMapsPass::run(const DeviceScene& scene, const Pose& pose, const ViewChoice& choice) {
   const std::vector<LightView> views = place_lights(pose);
   const bool tinted = scene.has_tinted_shadows();
   if (tinted) tints_pass_.resize(raw_.size_px(), maps_.moments.size_px(), maps_.moments.layers(), filter_radius());
   maps_.tints = tinted ? &tints_pass_.tints() : nullptr;
-  ViewTracer* tracer = tracing.for_view(scene, raw_.size_px());
+  ViewRasterizer* rasterizer = choice.for_view(scene, raw_.size_px());
   for (std::size_t layer = 0; layer < views.size(); ++layer) {
-    if (tracer)
-      trace(*tracer, views[layer]);
+    if (rasterizer)
+      draw_by_processor(*rasterizer, views[layer]);
     else
       draw(scene, views[layer]);
     filter_into(static_cast<int>(layer));

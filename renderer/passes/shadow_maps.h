@@ -8,7 +8,7 @@
 #include "renderer/gl/texture.h"
 #include "renderer/passes/device_scene.h"
 #include "renderer/passes/shadow_tints.h"
-#include "renderer/passes/view_tracing.h"
+#include "renderer/passes/view_choice.h"
 #include "renderer/scene/pose.h"
 
 namespace lightwell {
@@ -34,7 +34,7 @@ class ShadowMapsPass {
   /// those beyond MAX_LIGHTS do not shine.
   static int layers_for(const Pose& pose);
 
-  const ShadowMaps& run(const DeviceScene& scene, const Pose& pose, const ViewTracing& tracing);
+  const ShadowMaps& run(const DeviceScene& scene, const Pose& pose, const ViewChoice& choice);
 
  private:
   struct Variant {
@@ -47,14 +47,14 @@ class ShadowMapsPass {
   std::vector<LightView> place_lights(const Pose& pose);
   float cube_tangent() const;
   void draw(const DeviceScene& scene, const LightView& view);
-  void trace(ViewTracer& tracer, const LightView& view);
+  void draw_by_processor(ViewRasterizer& rasterizer, const LightView& view);
   int filter_radius() const;
   void filter_into(int layer);
   void filter_pass(const gl::Texture& from, const gl::Framebuffer& to, glm::ivec2 direction, int radius);
 
   Variant plain_, covered_, tinted_;
-  gl::ProgramPtr traced_;
-  gl::Uniform<int> traced_side_;
+  gl::ProgramPtr from_depths_;
+  gl::Uniform<int> from_depths_side_;
   gl::Buffer depths_{"depths of a light's rays", 0, gl::BufferUse::kHostVisible};
   gl::BufferTexture depth_texels_{"depths of a light's rays", GL_RG32F};
   ShadowTintsPass tints_pass_;

@@ -1,11 +1,11 @@
 // A point that the camera sees, without its material: what the G-buffer is made of. It comes from the rasteriser, or
-// (TRACED) from the hit of the pixel's ray; either file defines `SeenPoint seen_point()`. Needs camera, scene_data,
+// (FROM_HITS) from the hit of the pixel's ray; either file defines `SeenPoint seen_point()`. Needs camera, scene_data,
 // surface.
 
 struct SeenPoint {
   uint material;
   vec3 position_ws;
-  float view_depth_m;        // of TRACED alone
+  float view_depth_m;        // of FROM_HITS alone
   Attributes at;
   vec2 footprint;            // of a pixel, in units of each set of uv
   vec3 geometric_normal_ws;  // on either side, of any length; zero where it is not known
@@ -25,8 +25,8 @@ vec2 footprint_of(vec4 uv_across, vec4 uv_down) {
   return vec2(max(length(uv_across.xy), length(uv_down.xy)), max(length(uv_across.zw), length(uv_down.zw)));
 }
 
-#ifdef TRACED
-#include "shaders/traced_point.glsl"
+#ifdef FROM_HITS
+#include "shaders/hit_point.glsl"
 #else
 #include "shaders/rasterized_point.glsl"
 #endif

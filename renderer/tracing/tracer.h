@@ -100,7 +100,6 @@ struct TraceScene {
 };
 
 class HostTracer;
-class ViewTracer;
 
 class Tracer {
  public:
@@ -130,9 +129,6 @@ class Tracer {
   /// For each pixel and direction the nearest of its patch's candidates that its own ray meets: hits[direction *
   /// pixels + pixel], t = kMiss where there is none. `list` is filled with them, as by closest_hit.
   virtual void test_candidates(const CandidateTest& test, gl::Buffer& hits, HitList& list) = 0;
-
-  /// Where it finds what views see without rays in a buffer; null: it does not.
-  virtual ViewTracer* views() { return nullptr; }
 
   /// Bytes held for hierarchies, on whichever side they live.
   virtual std::uint64_t memory_bytes() const = 0;

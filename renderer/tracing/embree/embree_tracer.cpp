@@ -10,7 +10,6 @@
 #include "renderer/check.h"
 #include "renderer/tracing/embree/candidates.h"
 #include "renderer/tracing/embree/packet.h"
-#include "renderer/tracing/embree/view_rays.h"
 #include "renderer/tracing/host_tracer.h"
 #include "renderer/tracing/thread_pool.h"
 #include "renderer/tracing/world_hierarchy.h"
@@ -111,7 +110,7 @@ void closest_hits_at_once(const EmbreeScene& scene, std::span<const Ray> rays, s
   closest_hits<width>(scene, rays.data(), hits.data(), nullptr, 0, static_cast<std::uint32_t>(rays.size()));
 }
 
-class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer {
+class EmbreeTracer final : public Tracer, private HostTracer {
  public:
   explicit EmbreeTracer(unsigned threads) : pool_(threads), scene_(threads) {
     if (rtcGetDeviceProperty(scene_.device(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
@@ -185,32 +184,6 @@ class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer 
     finish(list, writer.count());
   }
 
-  ViewTracer* views() override { return this; }
-
-  void camera_hits(const ViewRays& rays, gl::Buffer& hits) override {
-    Hit* out = host_of_view<Hit>(rays, hits);
-    for_tiles(rays.size_px, [&](std::uint32_t tile) {
-      if (width_ == 16)
-        lightwell::camera_hits<16>(scene_, rays, tile, out);
-      else if (width_ == 8)
-        lightwell::camera_hits<8>(scene_, rays, tile, out);
-      else
-        lightwell::camera_hits<4>(scene_, rays, tile, out);
-    });
-  }
-
-  void depths(const ViewRays& rays, DepthMeasure measure, float factor, gl::Buffer& depths) override {
-    ViewDepth* out = host_of_view<ViewDepth>(rays, depths);
-    for_tiles(rays.size_px, [&](std::uint32_t tile) {
-      if (width_ == 16)
-        view_depths<16>(scene_, rays, measure, factor, tile, out);
-      else if (width_ == 8)
-        view_depths<8>(scene_, rays, measure, factor, tile, out);
-      else
-        view_depths<4>(scene_, rays, measure, factor, tile, out);
-    });
-  }
-
   std::uint64_t memory_bytes() const override { return scene_.memory_bytes() + world_hierarchy_.memory_bytes(); }
 
  private:
@@ -247,16 +220,6 @@ class EmbreeTracer final : public Tracer, public ViewTracer, private HostTracer 
     LIGHTWELL_CHECK(buffer.host() != nullptr);
     LIGHTWELL_CHECK_OP(count * sizeof(T), <=, buffer.size_bytes());
     return reinterpret_cast<const T*>(buffer.host());
-  }
-  template <class T>
-  static T* host_of_view(const ViewRays& rays, gl::Buffer& buffer) {
-    const auto pixels = static_cast<std::uint64_t>(rays.size_px.x) * static_cast<std::uint64_t>(rays.size_px.y);
-    LIGHTWELL_CHECK_OP(pixels * sizeof(T), <=, buffer.size_bytes());
-    return host_of<T>(buffer);
-  }
-  void for_tiles(glm::ivec2 size_px, const std::function<void(std::uint32_t)>& body) {
-    gl::wait_for_device();
-    pool_.parallel_for(view_tiles(size_px), 1, [&](std::uint32_t tile, std::uint32_t) { body(tile); });
   }
   static void finish(HitList& list, std::uint32_t hit_count) {
     std::uint32_t* dispatch = host_of<std::uint32_t>(list.dispatch);

@@ -1,4 +1,4 @@
-#include "renderer/passes/view_tracing.h"
+#include "renderer/passes/view_choice.h"
 
 #include <algorithm>
 
@@ -6,10 +6,10 @@ namespace lightwell {
 
 namespace {
 
-// From here on rays are quicker, measured with llvmpipe and Embree on four cores and 512x512 pixels: the camera's view
-// is found in the same time either way at 0.15 triangles a pixel, a shadow map at 0.3. Fewer triangles than the second
-// number are drawn in 3 ms, which leaves nothing to win.
-constexpr double kTrianglesPerPixel = 0.25, kFewestTriangles = 50'000.0;
+// From here on the processor is quicker, measured with llvmpipe on four cores and 512x512 pixels: a view of 0.09
+// triangles a pixel is drawn in the same time either way. Fewer triangles than the second number are drawn in 2 ms,
+// which leaves nothing to win.
+constexpr double kTrianglesPerPixel = 0.1, kFewestTriangles = 10'000.0;
 
 constexpr double kMostPixels = 1 << 24;  // hits of more would take over 320 MiB
 
@@ -17,12 +17,12 @@ constexpr float kFarthest = 1e30f;
 
 }  // namespace
 
-ViewTracer* ViewTracing::for_view(const DeviceScene& scene, glm::ivec2 size_px) const {
-  if (!tracer || scene.has_coverage() || scene.has_clear()) return nullptr;
+ViewRasterizer* ViewChoice::for_view(const DeviceScene& scene, glm::ivec2 size_px) const {
+  if (!rasterizer || scene.has_coverage() || scene.has_clear()) return nullptr;
   const double pixels = static_cast<double>(size_px.x) * static_cast<double>(size_px.y);
   if (pixels > kMostPixels) return nullptr;
   const double most_drawn = std::max(kFewestTriangles, kTrianglesPerPixel * pixels);
-  return always || static_cast<double>(scene.triangles()) > most_drawn ? tracer : nullptr;
+  return always || static_cast<double>(scene.triangles()) > most_drawn ? rasterizer : nullptr;
 }
 
 ViewRays camera_rays(const CameraBlock& camera) {

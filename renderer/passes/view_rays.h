@@ -1,10 +1,7 @@
-// What a view sees, found by one ray a pixel instead of by rasterising: of tracers that are quicker at it than the
-// device where triangles outnumber pixels. No rays lie in a buffer, since all follow from a few vectors.
+// What each pixel of a view looks along: rays through the pixels' middles, all of which follow from a few vectors.
 #pragma once
 
 #include <glm/glm.hpp>
-
-#include "renderer/gl/buffer.h"
 
 namespace lightwell {
 
@@ -27,17 +24,5 @@ static_assert(sizeof(ViewDepth) == 8);
 
 /// How a ViewDepth counts: t as it is, or the distance from the ray's origin in metres; in both cases times a factor.
 enum class DepthMeasure { kAlongView, kDistance };
-
-class ViewTracer {
- public:
-  virtual ~ViewTracer() = default;
-
-  /// hits[y * width + x], as Hit: the nearest surface that a camera sees, t = kMiss where there is none. Of triangles
-  /// that are not Coverage::double_sided the front alone counts. Waits for the device, which reads `hits` afterwards.
-  virtual void camera_hits(const ViewRays& rays, gl::Buffer& hits) = 0;
-
-  /// depths[y * width + x], as ViewDepth: the nearest surface, both sides of which count. Otherwise as camera_hits.
-  virtual void depths(const ViewRays& rays, DepthMeasure measure, float factor, gl::Buffer& depths) = 0;
-};
 
 }  // namespace lightwell

@@ -1,4 +1,4 @@
-// What the ray of a pixel met: ViewTracer::camera_hits. Needs seen_point, ray, fetch_hit.
+// What the middle of a pixel sees: ViewRasterizer::camera_hits. Needs seen_point, ray, fetch_hit.
 
 #if defined(HAS_TEXTURES) || defined(FILTER_SPECULAR)
 #define NEEDS_STEPS 1
