@@ -171,6 +171,9 @@ void HostChunk::trace(const lanes::PatchDirection& direction) {
         {missed_.from[0][n], missed_.from[1][n], missed_.from[2][n]}, 0.0f, lanes::along(direction), 1e30f};
   batch_.tracer.closest_hits(std::span(missed_rays_).first(missed_.count),
                              std::span(missed_hits_).first(missed_.count));
+  // Among small triangles no two rays meet the same one, and each lies far from the last.
+  for (std::uint32_t n = 0; n < missed_.count; ++n)
+    if (missed_hits_[n].t >= 0.0f) triangles_.prefetch(missed_hits_[n].instance, missed_hits_[n].triangle);
   for (std::uint32_t n = 0; n < missed_.count; ++n)
     if (missed_hits_[n].t >= 0.0f) keep_hit(missed_.pixel[n], direction, missed_hits_[n]);
 }
@@ -194,7 +197,7 @@ std::uint32_t HostChunk::candidate_of(std::uint32_t instance, std::uint32_t tria
     if (candidate_hits_[candidate].instance == instance && candidate_hits_[candidate].triangle == triangle)
       return candidate;
   if (candidate_count_ == candidates_.size()) return candidate_count_;
-  add_candidate(triangles_.at(instance, triangle), lanes::along(direction));
+  add_candidate(triangles_.at_hit(instance, triangle), lanes::along(direction));
   return candidate_count_ - 1;
 }
 

@@ -33,13 +33,8 @@ glm::mat3 normals_to_world(const DeviceInstance& instance) {
 }
 
 // As hit_point() in shaders/hit_surface.glsl, up to what depends on the ray and the place within the triangle.
-lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32_t instance_index,
-                              std::uint32_t triangle_index) {
-  const DeviceInstance& instance = scene.instances[instance_index];
-  const DeviceTriangle& triangle = scene.triangles[instance.first_triangle + triangle_index];
-  const DeviceMaterial& material = scene.materials[instance.material];
-  const glm::mat3 to_world = normals_to_world(instance);
-  lanes::HitSurface surface;
+void place_surface(const DeviceTriangle& triangle, const DeviceMaterial& material, const glm::mat3& to_world,
+                   lanes::HitSurface& surface) {
   for (int corner = 0; corner < 3; ++corner)
     assign(surface.normals[corner], to_world * unpack_octahedral(triangle.normals[corner]));
   assign(surface.geometric_normal, glm::normalize(to_world * unpack_octahedral(triangle.geometric_normal)));
@@ -51,7 +46,6 @@ lanes::HitSurface hit_surface(const DeviceScene::HostHitData& scene, std::uint32
   assign(surface.emission, material.emission);
   surface.lit = (material.flags & kDeviceMaterialUnlit) != 0 ? 0.0f : 1.0f;
   surface.is_flat = triangle.normals[0] == triangle.normals[1] && triangle.normals[1] == triangle.normals[2];
-  return surface;
 }
 
 }  // namespace
@@ -62,10 +56,34 @@ float side_of(const lanes::HitSurface& surface, glm::vec3 direction) {
 }
 
 const PlacedTriangle& TriangleCache::at(std::uint32_t instance, std::uint32_t triangle) {
+  PlacedTriangle& placed = place(instance, triangle);
+  if (!placed.has_corners) placed.corners_ws = tracer_.corners_ws(instance, triangle);
+  placed.has_corners = true;
+  return placed;
+}
+
+void TriangleCache::prefetch(std::uint32_t instance, std::uint32_t triangle) const {
+  __builtin_prefetch(&scene_.triangles[scene_.instances[instance].first_triangle + triangle]);
+  const char* to = reinterpret_cast<const char*>(&placed_[place_of(instance, triangle)]);
+  for (std::size_t byte = 0; byte < sizeof(PlacedTriangle); byte += 64) __builtin_prefetch(to + byte, 1);
+}
+
+std::size_t TriangleCache::place_of(std::uint32_t instance, std::uint32_t triangle) {
   constexpr std::uint32_t kStride = 397;  // so that instances of one mesh do not share places
-  PlacedTriangle& placed = placed_[(triangle + instance * kStride) % kPlaces];
-  if (placed.instance != instance || placed.triangle != triangle)
-    placed = {instance, triangle, tracer_.corners_ws(instance, triangle), hit_surface(scene_, instance, triangle)};
+  return (triangle + instance * kStride) % kPlaces;
+}
+
+PlacedTriangle& TriangleCache::place(std::uint32_t instance_index, std::uint32_t triangle_index) {
+  PlacedTriangle& placed = placed_[place_of(instance_index, triangle_index)];
+  if (placed.instance == instance_index && placed.triangle == triangle_index) return placed;
+  const DeviceInstance& instance = scene_.instances[instance_index];
+  if (instance_index != last_instance_) normals_to_world_ = normals_to_world(instance);
+  last_instance_ = instance_index;
+  placed.instance = instance_index;
+  placed.triangle = triangle_index;
+  placed.has_corners = false;
+  place_surface(scene_.triangles[instance.first_triangle + triangle_index], scene_.materials[instance.material],
+                normals_to_world_, placed.surface);
   return placed;
 }
 

@@ -16,7 +16,8 @@ namespace lightwell {
 
 struct PlacedTriangle {
   std::uint32_t instance = ~0u, triangle = ~0u;
-  std::array<glm::vec3, 3> corners_ws;
+  bool has_corners = false;
+  std::array<glm::vec3, 3> corners_ws;  // undefined without has_corners
   lanes::HitSurface surface;
 };
 
@@ -29,15 +30,24 @@ class TriangleCache {
   TriangleCache(const DeviceScene::HostHitData& scene, const HostTracer& tracer)
       : scene_(scene), tracer_(tracer), placed_(kPlaces) {}
 
-  /// Valid until the next call.
+  /// Valid until the next call, as is what at_hit() returns.
   const PlacedTriangle& at(std::uint32_t instance, std::uint32_t triangle);
+  /// The same, but that it may be without corners, which lie far away in memory.
+  const PlacedTriangle& at_hit(std::uint32_t instance, std::uint32_t triangle) { return place(instance, triangle); }
+  /// Has the memory bring what at_hit() will read.
+  void prefetch(std::uint32_t instance, std::uint32_t triangle) const;
 
  private:
+  static std::size_t place_of(std::uint32_t instance, std::uint32_t triangle);
+  PlacedTriangle& place(std::uint32_t instance, std::uint32_t triangle);
+
   static constexpr std::size_t kPlaces = 2048;  // 300 kB, for the second level of a processor's caches
 
   const DeviceScene::HostHitData scene_;
   const HostTracer& tracer_;
   std::vector<PlacedTriangle> placed_;
+  std::uint32_t last_instance_ = ~0u;
+  glm::mat3 normals_to_world_{1.0f};  // of the last instance
 };
 
 /// One for each thread that is at work.

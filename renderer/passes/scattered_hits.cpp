@@ -24,7 +24,7 @@ void ScatteredHits::add(std::uint32_t pixel, glm::vec3 from_ws, const lanes::Pat
   rays_.u[lane] = hit.u;
   rays_.v[lane] = hit.v;
   if (hit.t >= 0.0f) {
-    rays_.surfaces[lane] = triangles_.at(hit.instance, hit.triangle).surface;
+    rays_.surfaces[lane] = triangles_.at_hit(hit.instance, hit.triangle).surface;
     rays_.side[lane] = side_of(rays_.surfaces[lane], lanes::along(direction));
   }
   if (count_ == lanes::kMostLanes) finish();

@@ -80,6 +80,17 @@ View everything() {
   return {"everything", std::move(scene), look_at({0.5f, 1.2f, 5.0f}, {0.0f, 0.0f, 0.0f}, 0.8f)};
 }
 
+// More triangles than the lanes have a hierarchy for, far smaller than pixels' distances; one side is mirrored.
+View small_triangles() {
+  SceneMaker maker;
+  maker.quad({-4, -1, 4}, {8, 0, 0}, {0, 0, -8}, maker.material(lambert(glm::vec3(0.7f, 0.6f, 0.5f))));
+  maker.sphere({-1.0f, 0, 0}, 0.95f, 300, false, maker.material(lambert(glm::vec3(0.2f, 0.5f, 0.8f))));
+  maker.sphere({-1.0f, 0, 0.3f}, 0.95f, 300, false, maker.material(lambert(glm::vec3(0.8f, 0.3f, 0.2f))));
+  maker.scene().nodes.back().local.scale.x = -1.0f;
+  maker.directional({0.3f, -1.0f, -0.4f}, 2.0f);
+  return {"small triangles", maker.take(), look_at({0.5f, 1.2f, 5.0f}, {0.0f, 0.0f, 0.0f}, 0.8f)};
+}
+
 void expect_same(const View& view, const char* what, Settings host, Settings device) {
   if (shared_renderer().tracer_name() != "embree") GTEST_SKIP() << "this build has no tracer on the processor";
   const Pixels by_host = render(view.scene, view.camera, host, kSizePx);
@@ -102,6 +113,12 @@ TEST(HostGather, KnowsGroupsAndLargePatches) {
   expect_same(view, "3 groups", first_bounce(4, 3, true), first_bounce(4, 3, false));
   expect_same(view, "pixels in 2 groups", first_bounce(1, 2, true), first_bounce(1, 2, false));
   expect_same(view, "patches of 16", first_bounce(16, 1, true), first_bounce(16, 1, false));
+}
+
+TEST(HostGather, KnowsManySmallTriangles) {
+  const View view = small_triangles();
+  expect_same(view, "patches of 8", first_bounce(8, 1, true), first_bounce(8, 1, false));
+  expect_same(view, "3 groups", first_bounce(4, 3, true), first_bounce(4, 3, false));
 }
 
 TEST(HostGather, KnowsTheMethodAsPrinted) {
