@@ -62,7 +62,6 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
       g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + frame_number_, &motion_,
                          frame.scene.has_clear() ? GBufferLayer::kBehindClear : GBufferLayer::kAll);
   frame.timer.mark("g-buffer");
-  punctual_light_pass_.resize(frame.size_px);
   const TracedLight& direct = punctual_light_pass_.run(frame, g_buffer, lights_, frame_number_);
   // With this frame's jitter, so that what stands still is found exactly where it was.
   const auto clip_from_world = [&](const PlacedCamera& c) {

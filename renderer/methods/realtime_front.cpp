@@ -13,7 +13,6 @@ const Picture& RealtimeFront::run(FrameContext& frame, const Picture& behind, co
                                   bool reflects, bool accumulate) {
   g_buffer_pass_.resize(frame.size_px);
   layers_pass_.resize(frame.size_px);
-  punctual_light_pass_.resize(frame.size_px);
   const gl::Texture& layers = layers_pass_.run(frame.scene, sampling.g_buffer);
   const GBuffer& g_buffer = g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + sampling.frame_number,
                                                nullptr, GBufferLayer::kClearAlone);

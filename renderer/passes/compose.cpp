@@ -162,7 +162,7 @@ const Picture& ComposePass::run(const DeviceScene& scene, const GBuffer& g_buffe
   indirect.image->bind(UNIT_IMAGE_B);
   indirect.guide->bind(UNIT_GUIDE);
   gl::Defines defines =
-      gl::joined(gl::joined(scene.brdf_defines(), scene.smooth_defines()), {"TRACED_LIGHT 1", "JOINT_UPSCALE 1"});
+      gl::joined(gl::joined(scene.brdf_defines(), scene.smooth_defines()), {direct.define(), "JOINT_UPSCALE 1"});
   if (lists) {
     defines.emplace_back("LIST_PIXELS 1");
     lists->bind();
@@ -183,7 +183,7 @@ const Picture& ComposePass::run_over(const BehindClear& behind, const DeviceScen
   direct.visible_texels.bind(UNIT_PUNCTUAL_VISIBLE);
   behind.picture.image.bind(UNIT_BEHIND);
   behind.layers.bind(UNIT_CLEAR_LAYERS);
-  gl::Defines defines = gl::joined(gl::joined(scene.brdf_defines(), over), {"TRACED_LIGHT 1", "NO_MAP 1"});
+  gl::Defines defines = gl::joined(gl::joined(scene.brdf_defines(), over), {direct.define(), "NO_MAP 1"});
   if (lists) {
     defines.emplace_back("LIST_PIXELS 1");
     if (scene.has_clear_volumes()) defines.emplace_back("REFRACTED 1");

@@ -26,15 +26,18 @@ layout(binding = UNIT_VIEW_MAP) uniform sampler2D view_map;  // see map_view.com
 uniform int view;  // VIEW_FINAL, ...
 
 #ifdef TRACED_LIGHT
-// By one shadow ray a pixel: see punctual_light.comp.
+// By so many shadow rays a pixel: see punctual_light.comp.
 layout(binding = UNIT_PUNCTUAL_LIGHT) uniform samplerBuffer punctual_light;
-layout(binding = UNIT_PUNCTUAL_VISIBLE) uniform usamplerBuffer punctual_visible;  // a bit a pixel
+layout(binding = UNIT_PUNCTUAL_VISIBLE) uniform usamplerBuffer punctual_visible;  // a bit a ray
 
 vec3 direct_light(ivec2 pixel, GBufferPoint point) {
-  const int index = pixel.y * camera.size_px.x + pixel.x;
-  const bool visible = (texelFetch(punctual_visible, index / 32).x >> (index & 31) & 1u) != 0u;
-  const vec3 light = visible ? texelFetch(punctual_light, index).rgb : vec3(0.0);
-  return texelFetch(g_emission, pixel, 0).rgb + light;
+  vec3 light = texelFetch(g_emission, pixel, 0).rgb;
+  for (int i = 0; i < TRACED_LIGHT; ++i) {
+    const int ray = (i * camera.size_px.y + pixel.y) * camera.size_px.x + pixel.x;
+    const bool visible = (texelFetch(punctual_visible, ray / 32).x >> (ray & 31) & 1u) != 0u;
+    light += visible ? texelFetch(punctual_light, ray).rgb : vec3(0.0);
+  }
+  return light;
 }
 #else
 vec3 direct_light(ivec2 pixel, GBufferPoint point) {

@@ -49,6 +49,14 @@ double power_of(const Light& light, double scene_disk_m2) {
   return intensity * 2.0 * kPi * (1.0 - std::cos(static_cast<double>(light.outer_cone_angle)));
 }
 
+// What order equal lights come in never changes.
+std::vector<PlacedLight> strongest_first(std::vector<PlacedLight> lights, double scene_disk_m2) {
+  std::stable_sort(lights.begin(), lights.end(), [&](const PlacedLight& a, const PlacedLight& b) {
+    return power_of(a.light, scene_disk_m2) > power_of(b.light, scene_disk_m2);
+  });
+  return lights;
+}
+
 DeviceLightRecord record_of(const PlacedLight& placed) {
   const Light& light = placed.light;
   DeviceLightRecord record;
@@ -156,8 +164,9 @@ bool LightTable::update_environment(const Environment& environment) {
 
 void LightTable::upload(const Pose& pose) {
   const double scene_disk_m2 = disk_area_m2(pose);
+  const std::vector<PlacedLight> lights = strongest_first(pose.lights, scene_disk_m2);
   std::vector<double> powers;
-  for (const PlacedLight& light : pose.lights) powers.push_back(power_of(light.light, scene_disk_m2));
+  for (const PlacedLight& light : lights) powers.push_back(power_of(light.light, scene_disk_m2));
   const std::vector<AliasEntry> punctual = make_alias_table(powers);
   for (const EmittingInstance& instance : emitting_)
     for (const Emitter& emitter : instance.emitters) powers.push_back(emitter.power);
@@ -166,7 +175,7 @@ void LightTable::upload(const Pose& pose) {
   power_ = std::accumulate(powers.begin(), powers.end(), 0.0);
 
   std::vector<DeviceLightRecord> records;
-  for (const PlacedLight& light : pose.lights) records.push_back(record_of(light));
+  for (const PlacedLight& light : lights) records.push_back(record_of(light));
   std::vector<std::uint32_t> instance_lights(pose.instances.size(), 0);
   has_emitters_ = false;
   for (const EmittingInstance& instance : emitting_) {
@@ -186,7 +195,8 @@ void LightTable::upload(const Pose& pose) {
   choices.insert(choices.end(), punctual.begin(), punctual.end());
   const std::vector<AliasEntry> cell_choices = make_alias_table(cells_.weights);
   choices.insert(choices.end(), cell_choices.begin(), cell_choices.end());
-  append_sized_lights(powers, pose.lights.size(), choices);
+  append_sized_lights(powers, lights.size(), choices);
+  append_other_punctual(powers, lights.size(), choices);
   fill(lights_, light_texels_, records);
   fill(choices_, choice_texels_, choices);
   fill(instance_lights_, instance_light_texels_, instance_lights);
@@ -208,6 +218,17 @@ void LightTable::append_sized_lights(std::vector<double> powers, std::size_t pun
   choices.insert(choices.end(), sized_choices.begin(), sized_choices.end());
 }
 
+// The first `punctual` lights without the strongest of them.
+void LightTable::append_other_punctual(std::vector<double> powers, std::size_t punctual,
+                                       std::vector<AliasEntry>& choices) {
+  powers.resize(punctual);
+  std::fill_n(powers.begin(), std::min<std::size_t>(punctual, kStrongestLights), 0.0);
+  const std::vector<AliasEntry> other_choices = make_alias_table(powers);
+  counts_.others = static_cast<std::uint32_t>(other_choices.size());
+  counts_.others_first = static_cast<std::uint32_t>(choices.size());
+  choices.insert(choices.end(), other_choices.begin(), other_choices.end());
+}
+
 gl::Defines LightTable::sized_defines() const {
   gl::Defines defines;
   if (has_emitters()) defines.emplace_back("LIGHTS_TRIANGLES 1");
@@ -225,7 +246,7 @@ void LightTable::bind() const {
   light_texels_.bind(UNIT_LIGHT_TABLE);
   choice_texels_.bind(UNIT_LIGHT_CHOICES);
   instance_light_texels_.bind(UNIT_INSTANCE_LIGHTS);
-  lights_.bind_uniform(BINDING_EXACT_LIGHTS);
+  lights_.bind_uniform(BINDING_STRONGEST_LIGHTS);
 }
 
 LightTableUniforms::LightTableUniforms(const gl::ProgramPtr& program)

@@ -14,12 +14,17 @@
 
 namespace lightwell {
 
+/// The strongest punctual lights, by power, are the first of the table and left out of one of its tables of choices.
+inline constexpr std::uint32_t kStrongestLights = 3;
+
 /// Where in the buffers things are; uniforms of the same names in shaders/light_sampling.glsl.
 struct LightCounts {
-  std::uint32_t lights = 0;       // all that can be chosen
-  std::uint32_t punctual = 0;     // the first of them; a table of their own follows the one of all lights
-  std::uint32_t sized_first = 0;  // where the table of lights with a size begins
-  float sized_share = 0.0f;       // of the power of all; 0: there is none
+  std::uint32_t lights = 0;        // all that can be chosen
+  std::uint32_t punctual = 0;      // the first of them; a table of their own follows the one of all lights
+  std::uint32_t others = 0;        // entries of the table of punctual ones but the strongest; 0: there is none
+  std::uint32_t others_first = 0;  // where that table begins
+  std::uint32_t sized_first = 0;   // where the table of lights with a size begins
+  float sized_share = 0.0f;        // of the power of all; 0: there is none
   glm::ivec2 environment_cells{0};
   float environment_probability = 0.0f;
 };
@@ -77,6 +82,7 @@ class LightTable {
   bool update_environment(const Environment& environment);
   void upload(const Pose& pose);
   void append_sized_lights(std::vector<double> powers, std::size_t punctual, std::vector<AliasEntry>& choices);
+  void append_other_punctual(std::vector<double> powers, std::size_t punctual, std::vector<AliasEntry>& choices);
 
   PlainSky plain_sky_;
   EmissiveTextures emissive_textures_;

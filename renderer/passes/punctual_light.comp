@@ -1,7 +1,8 @@
-// Direct light of lights without a size: per pixel one light and its shadow ray. The light is chosen by what it would give
-// here if nothing were in its way, so that where one light reaches there is no noise at all.
-// EXACT_LIGHTS n: all n are looked at; without it a few candidates, sampled by their power (Talbot et al. 2005).
-layout(local_size_x = 8, local_size_y = 8) in;
+// Direct light of lights without a size: per pixel a shadow ray to each of the OWN_RAYS strongest, so that these make no
+// noise. OTHER_LIGHTS: one more ray to one of the others, chosen by what it would give here if nothing were in its way,
+// of a few candidates sampled by their power (Talbot et al. 2005).
+// Wide groups, for the lanes of a software device then write to places side by side.
+layout(local_size_x = 16, local_size_y = 4) in;
 
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
@@ -16,69 +17,76 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shaders/light_sampling.glsl"
 #include "shaders/next_event.glsl"
 
-// By four words: on a software device every store is a loop over the lanes.
+// All pixels' first rays, then their second ones. By four words: on a software device every store is a loop over the lanes.
 layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { vec4 shadow_rays[]; };  // 2 a ray
 layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
 
+// What a light gives if nothing is in its way.
+vec3 unshadowed(GBufferPoint point, TableSample from) {
+  return brdf_times_cosine(point.brdf, point.normal_ws, point.to_camera_ws, from.to_light_ws) * from.value;
+}
+
+void send_ray(uint number, ivec2 pixel, GBufferPoint point, TableSample from, vec3 value) {
+  const bool lit = point.valid && luminance(value) > 0.0;
+  const float side = dot(from.to_light_ws, point.geometric_normal_ws) < 0.0 ? -1.0 : 1.0;
+  const vec3 origin_ws = point.position_ws + side * ray_offset_m(point) * point.geometric_normal_ws;
+  Ray ray = shadow_ray(origin_ws, point.position_ws, from);
+  ray.t_max = lit ? ray.t_max : -1.0;
+  const ivec2 size_px = camera.size_px.xy;
+  const uint index = uint((int(number) * size_px.y + pixel.y) * size_px.x + pixel.x);
+  shadow_rays[2u * index] = vec4(ray.origin_ws, ray.t_min);
+  shadow_rays[2u * index + 1u] = vec4(ray.direction_ws, ray.t_max);
+  light[index] = vec4(lit ? value : vec3(0.0), 0.0);
+}
+
+#if OWN_RAYS > 0
+// The table's first records, as a uniform block: on a software device each load from a texture is one per lane and word.
+layout(std140, binding = BINDING_STRONGEST_LIGHTS) uniform StrongestLights { uvec4 strongest_lights[4 * OWN_RAYS]; };
+
+void send_own_rays(ivec2 pixel, GBufferPoint point) {
+  for (uint i = 0u; i < uint(OWN_RAYS); ++i) {
+    const uvec4 record[4] = uvec4[4](strongest_lights[4u * i], strongest_lights[4u * i + 1u],
+                                     strongest_lights[4u * i + 2u], strongest_lights[4u * i + 3u]);
+    const TableSample from = sample_punctual(record, 1.0, point.position_ws);
+    send_ray(i, pixel, point, from, unshadowed(point, from));
+  }
+}
+#else
+void send_own_rays(ivec2 pixel, GBufferPoint point) {}
+#endif
+
+#ifdef OTHER_LIGHTS
+uniform uint other_choices;  // where their alias table begins
 uniform uint frame_number;
 uniform uint seed;
 
-// A light chosen among those seen so far, each with the share of its weight in theirs.
-struct Reservoir {
-  TableSample light;
-  vec3 value;    // of the chosen one
-  float weight;
-  float weights; // of all
-  float u;
-};
-
-void consider(inout Reservoir kept, GBufferPoint point, TableSample light) {
-  const vec3 value =
-      brdf_times_cosine(point.brdf, point.normal_ws, point.to_camera_ws, light.to_light_ws) * light.value;
-  const float weight = luminance(value);
-  kept.weights += weight;
-  const float share = weight / max(kept.weights, 1e-30);
-  // One random number serves all choices: what is left of it after a choice is as uniform as it was.
-  const bool take = kept.u < share && weight > 0.0;
-  kept.u = take ? kept.u / max(share, 1e-30) : (kept.u - share) / max(1.0 - share, 1e-30);
-  if (take) {
-    kept.value = value;
-    kept.weight = weight;
-    kept.light = light;
+void send_other_ray(ivec2 pixel, GBufferPoint point) {
+  const uint kCandidates = 4u;
+  const uint pixel_seed = hash(uint(pixel.y << 16 | pixel.x) ^ hash(seed));
+  TableSample chosen = TableSample(vec3(0.0, 1.0, 0.0), 0.0, vec3(0.0), 0.0);
+  vec3 value = vec3(0.0);  // of the chosen one, over its weight
+  float weights = 0.0;
+  float u = unit_interval(hash(pixel_seed + frame_number * 0x9e3779b9u));
+  for (uint i = 0u; i < kCandidates; ++i) {
+    const Choice choice =
+        choose(other_choices, table_punctual_lights, sobol_1d(frame_number * kCandidates + i, pixel_seed));
+    const TableSample candidate = sample_chosen_light(choice, point.position_ws, vec2(0.0), 0.0);
+    const vec3 given = unshadowed(point, candidate) / float(kCandidates);
+    const float weight = luminance(given);
+    weights += weight;
+    const float share = weight / max(weights, 1e-30);
+    // One random number serves all choices: what is left of it after a choice is as uniform as it was.
+    const bool take = u < share && weight > 0.0;
+    u = take ? u / max(share, 1e-30) : (u - share) / max(1.0 - share, 1e-30);
+    if (take) {
+      chosen = candidate;
+      value = given / weight;
+    }
   }
-}
-
-#ifdef EXACT_LIGHTS
-// The table's first records, read by constant indices: on a software device one that a loop counts up costs a load per
-// lane and word.
-layout(std140, binding = BINDING_EXACT_LIGHTS) uniform ExactLights { uvec4 exact_lights[4 * EXACT_LIGHTS]; };
-#define EXACT_LIGHT(i) \
-  sample_punctual(     \
-      uvec4[4](exact_lights[4 * i], exact_lights[4 * i + 1], exact_lights[4 * i + 2], exact_lights[4 * i + 3]), 1.0, \
-      point.position_ws)
-
-void consider_lights(inout Reservoir kept, GBufferPoint point, uint pixel_seed) {
-  consider(kept, point, EXACT_LIGHT(0));
-#if EXACT_LIGHTS > 1
-  consider(kept, point, EXACT_LIGHT(1));
-#endif
-#if EXACT_LIGHTS > 2
-  consider(kept, point, EXACT_LIGHT(2));
-#endif
-#if EXACT_LIGHTS > 3
-  consider(kept, point, EXACT_LIGHT(3));
-#endif
+  send_ray(uint(OWN_RAYS), pixel, point, chosen, value * weights);
 }
 #else
-void consider_lights(inout Reservoir kept, GBufferPoint point, uint pixel_seed) {
-  const uint kCandidates = 4u;
-  for (uint i = 0u; i < kCandidates; ++i) {
-    const float u = sobol_1d(frame_number * kCandidates + i, pixel_seed);
-    TableSample light = sample_light(point.position_ws, true, vec2(0.0), u, 0.0);
-    light.value /= float(kCandidates);
-    consider(kept, point, light);
-  }
-}
+void send_other_ray(ivec2 pixel, GBufferPoint point) {}
 #endif
 
 // Without a branch, for under one a software device reads uniform blocks once a lane; what lies outside the picture does
@@ -86,17 +94,6 @@ void consider_lights(inout Reservoir kept, GBufferPoint point, uint pixel_seed) 
 void main() {
   const ivec2 pixel = min(ivec2(gl_GlobalInvocationID.xy), camera.size_px.xy - 1);
   const GBufferPoint point = g_buffer_point(pixel);
-  const uint pixel_seed = hash(uint(pixel.y << 16 | pixel.x) ^ hash(seed));
-  Reservoir kept = Reservoir(TableSample(vec3(0.0, 1.0, 0.0), 0.0, vec3(0.0), 0.0), vec3(0.0), 0.0, 0.0,
-                             unit_interval(hash(pixel_seed + frame_number * 0x9e3779b9u)));
-  consider_lights(kept, point, pixel_seed);
-  const bool lit = point.valid && kept.weight > 0.0;
-  const float side = dot(kept.light.to_light_ws, point.geometric_normal_ws) < 0.0 ? -1.0 : 1.0;
-  const vec3 origin_ws = point.position_ws + side * ray_offset_m(point) * point.geometric_normal_ws;
-  Ray ray = shadow_ray(origin_ws, point.position_ws, kept.light);
-  ray.t_max = lit ? ray.t_max : -1.0;
-  const uint index = uint(pixel.y * camera.size_px.x + pixel.x);
-  shadow_rays[2u * index] = vec4(ray.origin_ws, ray.t_min);
-  shadow_rays[2u * index + 1u] = vec4(ray.direction_ws, ray.t_max);
-  light[index] = vec4(lit ? kept.value * (kept.weights / kept.weight) : vec3(0.0), 0.0);
+  send_own_rays(pixel, point);
+  send_other_ray(pixel, point);
 }

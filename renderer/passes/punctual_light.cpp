@@ -6,10 +6,23 @@ namespace lightwell {
 
 namespace {
 
-constexpr std::uint32_t kMostExactLights = 4;
+// A GiB of them: no device is sure to take more in one buffer.
+constexpr std::uint64_t kMostRays = std::uint64_t{1} << 25;
 
-std::uint32_t pixels_of(glm::ivec2 size_px) {
-  return static_cast<std::uint32_t>(size_px.x) * static_cast<std::uint32_t>(size_px.y);
+// Of a pixel.
+struct ShadowRays {
+  std::uint32_t own = 0;  // to as many of the strongest lights
+  std::uint32_t other = 0;
+  std::uint32_t other_choices = 0;  // where the lights begin that the other goes to one of
+};
+
+// All lights have rays of their own, if they are few; else the strongest of them, and one ray is for the others. In
+// pictures over 4K there is one ray for all.
+ShadowRays rays_for(const LightCounts& counts, std::uint64_t pixels) {
+  const bool is_huge = pixels * (kStrongestLights + 1) > kMostRays;
+  if (counts.punctual <= (is_huge ? 1 : kStrongestLights + 1)) return {counts.punctual};
+  if (is_huge) return {0, 1, counts.lights};
+  return {kStrongestLights, counts.others > 0 ? 1u : 0u, counts.others_first};
 }
 
 }  // namespace
@@ -24,36 +37,39 @@ PunctualLightPass::PunctualLightPass(gl::ShaderLibrary& shaders, gl::BufferUse b
   traced_.visible = gl::Buffer("visible punctual lights", 0, buffers);
 }
 
-void PunctualLightPass::resize(glm::ivec2 size_px) {
-  const std::uint64_t pixels = pixels_of(size_px);
-  rays_.reserve(pixels * sizeof(Ray));
-  traced_.light.reserve(pixels * sizeof(glm::vec4));
-  traced_.visible.reserve((pixels + 31) / 32 * sizeof(std::uint32_t));
+void PunctualLightPass::reserve(std::uint64_t rays) {
+  rays_.reserve(rays * sizeof(Ray));
+  traced_.light.reserve(rays * sizeof(glm::vec4));
+  traced_.visible.reserve((rays + 31) / 32 * sizeof(std::uint32_t));
   traced_.light_texels.attach(traced_.light);
   traced_.visible_texels.attach(traced_.visible);
 }
 
 const TracedLight& PunctualLightPass::run(FrameContext& frame, const GBuffer& g_buffer, const LightTable& lights,
                                           std::uint32_t frame_number) {
-  if (!lights.has_punctual()) {
-    traced_.light.clear();
-    return traced_;
-  }
-  gl::Defines defines = gl::joined(frame.scene.brdf_defines(), {"LIGHTS_PUNCTUAL 1"});
-  if (lights.counts().punctual <= kMostExactLights)
-    defines.emplace_back("EXACT_LIGHTS " + std::to_string(lights.counts().punctual));
+  const auto pixels = static_cast<std::uint64_t>(frame.size_px.x) * static_cast<std::uint64_t>(frame.size_px.y);
+  const ShadowRays of_pixel = rays_for(lights.counts(), pixels);
+  traced_.rays_of_pixel = of_pixel.own + of_pixel.other;
+  const auto rays = static_cast<std::uint32_t>(pixels * traced_.rays_of_pixel);
+  reserve(rays);
+  if (rays == 0) return traced_;
+  gl::Defines defines = frame.scene.brdf_defines();
+  defines.emplace_back("LIGHTS_PUNCTUAL 1");
+  defines.emplace_back("OWN_RAYS " + std::to_string(of_pixel.own));
+  if (of_pixel.other > 0) defines.emplace_back("OTHER_LIGHTS 1");
   Variant& variant = variants_.with(defines);
   variant.lights.set(lights.counts());
+  variant.other_choices = of_pixel.other_choices;
   variant.frame_number = frame_number;
   variant.seed = frame.settings.seed;
   g_buffer.bind();
   rays_.bind_storage(BINDING_SAMPLE_SHADOW_RAYS);
   traced_.light.bind_storage(BINDING_SAMPLE_LIGHT);
-  variant.program->dispatch(frame.size_px);
+  variant.program->dispatch(frame.size_px, {16, 4});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   frame.timer.mark("direct light");
-  clear_shadows_.run(frame, rays_, pixels_of(frame.size_px), traced_.visible, {traced_.light}, false);
-  frame.rays += pixels_of(frame.size_px);
+  clear_shadows_.run(frame, rays_, rays, traced_.visible, {traced_.light}, false);
+  frame.rays += rays;
   frame.timer.mark("shadows");
   return traced_;
 }

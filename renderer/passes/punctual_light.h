@@ -1,4 +1,4 @@
-// Direct light of lights without a size, by one traced shadow ray a pixel.
+// Direct light of lights without a size, by traced shadow rays of every pixel.
 #pragma once
 
 #include "renderer/gl/variants.h"
@@ -9,8 +9,12 @@
 
 namespace lightwell {
 
-/// Per pixel of the picture, row by row: what its light would give (vec4, nit), and a bit that says whether it reaches.
+/// Per shadow ray what its light would give (vec4, nit), and a bit that says whether it reaches: row by row the first
+/// rays of all pixels, then their second ones.
 struct TracedLight {
+  std::uint32_t rays_of_pixel = 0;
+  /// For shaders that read it.
+  std::string define() const { return "TRACED_LIGHT " + std::to_string(rays_of_pixel); }
   gl::Buffer light, visible;
   gl::BufferTexture light_texels{"punctual light", GL_RGBA32F};
   gl::BufferTexture visible_texels{"visible punctual lights", GL_R32UI};
@@ -20,7 +24,6 @@ class PunctualLightPass {
  public:
   /// `buffers`: where rays live; host-visible for a native tracer.
   PunctualLightPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
-  void resize(glm::ivec2 size_px);
 
   /// `lights` is bound. `frame_number` counts the frames of the view.
   const TracedLight& run(FrameContext& frame, const GBuffer& g_buffer, const LightTable& lights,
@@ -29,11 +32,13 @@ class PunctualLightPass {
  private:
   struct Variant {
     explicit Variant(const gl::ProgramPtr& p)
-        : program(p), lights(p), frame_number(p, "frame_number"), seed(p, "seed") {}
+        : program(p), lights(p), other_choices(p, "other_choices"), frame_number(p, "frame_number"), seed(p, "seed") {}
     gl::ProgramPtr program;
     LightTableUniforms lights;
-    gl::Uniform<std::uint32_t> frame_number, seed;
+    gl::Uniform<std::uint32_t> other_choices, frame_number, seed;
   };
+  void reserve(std::uint64_t rays);
+
   gl::Variants<Variant> variants_;
   gl::BufferUse buffers_;
   ClearShadowsPass clear_shadows_;

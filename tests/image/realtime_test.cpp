@@ -20,7 +20,7 @@ TEST(RealtimeDirectLight, LambertPlaneUnderOneLuxHasRadianceAlbedoOverPi) {
   EXPECT_NEAR(pixels.center().g, 0.5 / kPi, 1e-4);
 }
 
-// Six lights are more than are looked at one by one: candidates are drawn from them.
+// Six lights are more than have rays of their own: candidates are drawn from the weaker ones.
 TEST(RealtimeDirectLight, FewAndManyLightsAddUp) {
   for (const int copies : {1, 3}) {
     SceneMaker maker;
