@@ -110,6 +110,9 @@ std::vector<QualityCase> quality_cases(int bounces) {
   realtime.warm_up = 0;
   for (const int frames : {1, 4, 16, 32})
     cases.push_back({"realtime", std::to_string(frames) + (frames == 1 ? " frame" : " frames"), realtime, frames});
+  Settings fewer = realtime;
+  fewer.samples = 48;
+  cases.push_back({"realtime, 48 directions", "4 frames", fewer, 4});
   cases.push_back({"realtime, served picture", std::to_string(as_served.warm_up) + " unseen frames", as_served, 1});
   as_served.method = Method::kThesis;
   for (const int samples : {32, 64}) {

@@ -151,7 +151,7 @@ World triangles_of_all_sizes(int count) {
 }
 
 TEST(ViewTriangles, AreTheNearestAtEveryPixel) {
-  World world = triangles_of_all_sizes(1500);
+  World world = triangles_of_all_sizes(700);
   for (const lanes::ViewKernels* kernels : lanes::usable_view_kernels())
     for (const ViewRays& rays : {perspective_rays(), parallel_rays()})
       for (const bool fronts_alone : {false, true}) {
@@ -182,7 +182,7 @@ World wall(int columns, const glm::mat4& world_from_object) {
 TEST(ViewTriangles, LeaveNoPixelBetweenThem) {
   const glm::mat4 turned(0.96f, 0, 0.28f, 0, 0, 1, 0, 0, -0.28f, 0, 0.96f, 0, 0, 0, 0, 1);
   const glm::mat4 mirrored(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
-  for (const int columns : {1, 7, 60, 700})
+  for (const int columns : {1, 7, 60, 400})
     for (const glm::mat4& matrix : {glm::mat4(1.0f), turned, mirrored}) {
       World world = wall(columns, matrix);
       world.coverage().double_sided = false;
