@@ -22,10 +22,13 @@ namespace {
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 constexpr int kLanes = 16;
+constexpr const char* kInstructions = "AVX-512";
 #elif defined(__AVX2__)
 constexpr int kLanes = 8;
+constexpr const char* kInstructions = "AVX2";
 #else
 constexpr int kLanes = 4;
+constexpr const char* kInstructions = "plain";
 #endif
 
 using Floats = float __attribute__((vector_size(4 * kLanes)));

@@ -281,14 +281,6 @@ __attribute__((flatten)) void gather_scattered(const PatchPixels& pixels, Scatte
   }
 }
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-constexpr const char* kInstructions = "AVX-512";
-#elif defined(__AVX2__)
-constexpr const char* kInstructions = "AVX2";
-#else
-constexpr const char* kInstructions = "plain";
-#endif
-
 }  // namespace
 
 extern const PatchKernels LIGHTWELL_LANES_TABLE(PatchKernels);

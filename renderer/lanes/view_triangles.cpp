@@ -219,14 +219,6 @@ void fill(const ViewTriangle& triangle, const ViewTarget& target, std::int32_t f
     }
 }
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-constexpr const char* kInstructions = "AVX-512";
-#elif defined(__AVX2__)
-constexpr const char* kInstructions = "AVX2";
-#else
-constexpr const char* kInstructions = "plain";
-#endif
-
 }  // namespace
 
 extern const ViewKernels LIGHTWELL_LANES_TABLE(ViewKernels);

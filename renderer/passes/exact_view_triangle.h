@@ -15,6 +15,8 @@ class ExactViewTriangle {
   ExactViewTriangle(const std::array<glm::dvec3, 3>& corners, double front, std::uint32_t number,
                     const lanes::ViewTarget& target);
 
+  bool is_in_picture() const { return first_px_.x < end_px_.x && first_px_.y < end_px_.y; }
+
   /// Draws those of the rows [begin, end) that it reaches.
   void draw(const lanes::ViewTarget& target, int begin, int end) const;
 

@@ -6,7 +6,6 @@
 
 #include "renderer/check.h"
 #include "renderer/lanes/affine_triangle.h"
-#include "renderer/passes/exact_view_triangle.h"
 
 namespace lightwell {
 namespace {
@@ -152,28 +151,17 @@ void ViewRasterizer::depths(const ViewRays& rays, DepthMeasure measure, float fa
 void ViewRasterizer::draw(const View& view) {
   ++views_drawn_;
   large_.clear();
-  beyond_.clear();
+  exact_.clear();
   host_.parallel_for(static_cast<std::uint32_t>(chunks_.size()), 1,
                      [&](std::uint32_t chunk, std::uint32_t) { draw_chunk(view, chunks_[chunk]); });
-  if (large_.empty() && beyond_.empty()) return;
-  std::vector<ExactViewTriangle> exact;
-  for (const std::uint32_t number : beyond_) {
-    const std::uint32_t i = instance_of(number, 0);
-    const Instance& instance = scene_.instances[i];
-    const std::uint32_t* indices = &instance.primitive->indices[std::size_t{3} * (number - first_numbers_[i])];
-    const glm::dmat4x3 from_object = view.from_object(instance.world_from_object);
-    std::array<glm::dvec3, 3> corners;
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      corners[corner] = from_object * glm::dvec4(positions_of(instance)[indices[corner]], 1.0f);
-    exact.emplace_back(corners, view.front_of(instance, scene_.coverage[i]), number, view.target);
-  }
+  if (large_.empty() && exact_.empty()) return;
   host_.parallel_for(static_cast<std::uint32_t>(view.target.height_px), kRowsAtOnce,
                      [&](std::uint32_t begin, std::uint32_t end) {
                        const int first = static_cast<int>(begin), last = static_cast<int>(end) - 1;
                        for (const lanes::ViewTriangle& triangle : large_)
                          kernels_.fill(triangle, view.target, std::max(first, triangle.first_px[1]),
                                        std::min(last, triangle.last_px[1]));
-                       for (const ExactViewTriangle& triangle : exact) triangle.draw(view.target, first, last + 1);
+                       for (const ExactViewTriangle& triangle : exact_) triangle.draw(view.target, first, last + 1);
                      });
 }
 
@@ -185,10 +173,11 @@ void ViewRasterizer::draw_chunk(const View& view, const Chunk& chunk) {
   triangles.count = chunk.count;
   triangles.first_number = first_numbers_[chunk.instance] + chunk.first;
   const glm::dmat4x3 from_object = view.from_object(instance.world_from_object);
+  const double front = view.front_of(instance, scene_.coverage[chunk.instance]);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
       triangles.rows[row][column] = static_cast<float>(from_object[column][row]);
-  triangles.front = static_cast<float>(view.front_of(instance, scene_.coverage[chunk.instance]));
+  triangles.front = static_cast<float>(front);
   thread_local lanes::ViewLeftovers left;
   left.large_count = left.beyond_count = 0;
   kernels_.draw(triangles, view.target, left);
@@ -198,10 +187,28 @@ void ViewRasterizer::draw_chunk(const View& view, const Chunk& chunk) {
       left.large[large++] = left.large[i];
     else
       kernels_.fill(left.large[i], view.target, left.large[i].first_px[1], left.large[i].last_px[1]);
-  if (large == 0 && left.beyond_count == 0) return;
+  left.large_count = large;
+  keep_for_later(left, triangles, from_object, front, view.target);
+}
+
+// What takes several threads.
+void ViewRasterizer::keep_for_later(const lanes::ViewLeftovers& left, const lanes::ViewTriangles& triangles,
+                                    const glm::dmat4x3& from_object, double front, const lanes::ViewTarget& target) {
+  if (left.large_count == 0 && left.beyond_count == 0) return;
+  std::vector<ExactViewTriangle> exact;
+  for (std::uint32_t i = 0; i < left.beyond_count; ++i) {
+    const std::uint32_t* indices = triangles.indices + std::size_t{3} * (left.beyond[i] - triangles.first_number);
+    std::array<glm::dvec3, 3> corners;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const float* position = triangles.positions + std::size_t{3} * indices[corner];
+      corners[corner] = from_object * glm::dvec4(position[0], position[1], position[2], 1.0);
+    }
+    if (const ExactViewTriangle triangle(corners, front, left.beyond[i], target); triangle.is_in_picture())
+      exact.push_back(triangle);
+  }
   std::lock_guard lock(mutex_);
-  large_.insert(large_.end(), left.large, left.large + large);
-  beyond_.insert(beyond_.end(), left.beyond, left.beyond + left.beyond_count);
+  large_.insert(large_.end(), left.large, left.large + left.large_count);
+  exact_.insert(exact_.end(), exact.begin(), exact.end());
 }
 
 // `guess`: that of a pixel nearby.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/lanes/view_triangles.h"
+#include "renderer/passes/exact_view_triangle.h"
 #include "renderer/passes/view_rays.h"
 #include "renderer/tracing/host_tracer.h"
 
@@ -42,6 +43,8 @@ class ViewRasterizer {
 
   void draw(const View& view);
   void draw_chunk(const View& view, const Chunk& chunk);
+  void keep_for_later(const lanes::ViewLeftovers& left, const lanes::ViewTriangles& triangles,
+                      const glm::dmat4x3& from_object, double front, const lanes::ViewTarget& target);
   void find_hits(const View& view, glm::ivec2 first, int count, Hit* hits) const;
   std::uint32_t instance_of(std::uint32_t number, std::uint32_t guess) const;
 
@@ -55,7 +58,7 @@ class ViewRasterizer {
 
   std::mutex mutex_;
   std::vector<lanes::ViewTriangle> large_;  // these are drawn by rows, after the others
-  std::vector<std::uint32_t> beyond_;
+  std::vector<ExactViewTriangle> exact_;
 };
 
 }  // namespace lightwell
