@@ -73,6 +73,7 @@ struct SettingsSpec {
   std::optional<bool> denoise;
   std::optional<bool> multiple_scattering;
   std::optional<bool> temporal_antialiasing;
+  std::optional<double> firefly_clamp;  // times the mean, 0 or more
   std::optional<bool> hand_over;
   std::optional<std::int32_t> target_fps;  // 0 or more
   std::optional<std::int32_t> warm_up;     // frames, 0 or more
@@ -314,6 +315,7 @@ struct Stats {
   std::uint64_t triangles = 0;
   double exposure_ev = 0.0;
   std::uint32_t accumulated = 1;  // frames in the picture while refining
+  double clamped_share = 0.0;     // of the indirect light, what the firefly clamp took away, 0 to 1
   std::string method;             // what the picture was made by, the session's or `reference`
   double time_s = 0.0;
 

@@ -163,6 +163,7 @@ void read_message(ObjectReader& object, Stats& out) {
   object.required("triangles", out.triangles, read_count);
   object.required("exposure_ev", out.exposure_ev, read_any_number);
   object.required("accumulated", out.accumulated, read_u32);
+  object.required("clamped_share", out.clamped_share, read_any_number);
   object.required("method", out.method, read_token);
   object.required("time_s", out.time_s, read_time);
 }

@@ -122,6 +122,7 @@ void read_settings(const Value& value, SettingsSpec& out) {
   object.optional("denoise", settings.denoise, read_boolean);
   object.optional("multiple_scattering", settings.multiple_scattering, read_boolean);
   object.optional("temporal_antialiasing", settings.temporal_antialiasing, read_boolean);
+  object.optional("firefly_clamp", settings.firefly_clamp, ReadNumber{0, 1e6});
   object.optional("hand_over", settings.hand_over, read_boolean);
   object.optional("target_fps", settings.target_fps, ReadInteger<std::int32_t>{0, 0x7fffffff});
   object.optional("warm_up", settings.warm_up, ReadInteger<std::int32_t>{0, 0x7fffffff});

@@ -155,6 +155,7 @@ struct MessageWriter {
             {"triangles", stats.triangles},
             {"exposure_ev", number(stats.exposure_ev)},
             {"accumulated", stats.accumulated},
+            {"clamped_share", number(stats.clamped_share)},
             {"method", stats.method},
             {"time_s", number(stats.time_s)}};
   }
@@ -218,6 +219,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "denoise", settings.denoise);
   give(object, "multiple_scattering", settings.multiple_scattering);
   give(object, "temporal_antialiasing", settings.temporal_antialiasing);
+  give(object, "firefly_clamp", settings.firefly_clamp);
   give(object, "hand_over", settings.hand_over);
   give(object, "target_fps", settings.target_fps);
   give(object, "warm_up", settings.warm_up);

@@ -288,6 +288,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const Picture& picture = view.handed_over(made, method, request.hand_over_frames);
     if (!request.is_unseen) state_->show(view, picture, request, frame);
 
+    if (method == Method::kRealtime && !request.is_unseen) frame.clamped_share = view.realtime().clamped_share();
     view.accumulated = picture.accumulated;
     frame.accumulated = picture.accumulated;
     frame.rays = context.rays;

@@ -65,6 +65,9 @@ enum class SeenBy { kQuicker, kDevice, kProcessor };
 /// more are the same, since its radiance cache carries all further bounces.
 constexpr int kUnlimitedBounces = 1 << 20;
 
+/// Of Settings::firefly_clamp.
+constexpr float kMostFireflyClamp = 1e6f;
+
 /// Names as they stand on the command line and in the API ("thesis", "occlusion-distance", ...); empty optional if
 /// unknown.
 std::optional<Method> method_from_name(std::string_view name);
@@ -119,6 +122,11 @@ struct Settings {
   /// set.
   int target_fps = 0;
   bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
+  /// Of `realtime`, 0..kMostFireflyClamp, 0: off. What one sample brings of light that has bounced is scaled down to at
+  /// most so many times what samples bring in the mean, over the frames so far; luminance, before the pixel's albedo.
+  /// Light straight from lamps and the sky, and what mirrors show, is left alone. Takes light away:
+  /// Frame::clamped_share.
+  float firefly_clamp = 0.0f;
   /// Of `realtime`, 0..64: a picture that is not one of a stream has so many unseen frames before it, whose history it
   /// begins with. Renderer::render leaves them to its caller, see warm_up_frames().
   int warm_up = 0;
@@ -161,6 +169,7 @@ struct Frame {
   std::vector<float> linear_rgb;           // 3 floats a pixel, row 0 at the top
   float exposure_ev = 0.0f;                // what was applied
   std::uint32_t accumulated = 1;           // frames in this picture
+  float clamped_share = 0.0f;              // of the indirect light, what Settings::firefly_clamp took away, 0..1
   std::vector<StageTime> stages;
   double total_ms = 0.0;
   std::uint64_t rays = 0;  // traced, those among them that candidates missed and that were traced anew

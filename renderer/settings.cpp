@@ -166,6 +166,8 @@ Status check_settings(const Settings& settings, glm::ivec2 size_px) {
     if (!check) return check;
   if (settings.shadow_filter % 2 == 0)
     return invalid_input("shadow-filter", std::to_string(settings.shadow_filter) + " is not odd");
+  if (!(settings.firefly_clamp >= 0.0f && settings.firefly_clamp <= kMostFireflyClamp))
+    return invalid_input("firefly-clamp", "it must be from 0 to 1e6");
   if (settings.exposure_ev && !(std::abs(*settings.exposure_ev) <= 64.0f))
     return invalid_input("exposure", "it must be a number from -64 to 64");
   if (settings.background)

@@ -41,6 +41,7 @@ class SettingsReader {
     read_value(spec.denoise, settings_.denoise);
     read_value(spec.multiple_scattering, settings_.multiple_scattering);
     read_value(spec.temporal_antialiasing, settings_.temporal_antialiasing);
+    read_value(spec.firefly_clamp, settings_.firefly_clamp);
     read_value(spec.hand_over, settings_.hand_over);
     read_value(spec.target_fps, settings_.target_fps);
     read_value(spec.warm_up, settings_.warm_up);
@@ -147,6 +148,7 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.denoise = settings.denoise;
   spec.multiple_scattering = settings.multiple_scattering;
   spec.temporal_antialiasing = settings.temporal_antialiasing;
+  spec.firefly_clamp = settings.firefly_clamp;
   spec.hand_over = settings.hand_over;
   spec.target_fps = settings.target_fps;
   spec.warm_up = settings.warm_up;

@@ -5,6 +5,7 @@ import { scene_title } from "./session_model.js";
 import { method_name, short_number } from "./stats.js";
 
 const kSamples = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
+const kFireflyClamps = [0, 5, 10, 20, 50, 100, 200, 500, 1000];
 const kFrameRates = [0, 5, 10, 15, 20, 24, 30, 60, 120, 240];
 const kIndirectSizes = [32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 const kShadowSizes = [128, 256, 512, 1024, 2048, 4096];
@@ -156,6 +157,10 @@ export class Panel {
     const temporal_antialiasing = this.setting("temporal_antialiasing", make_toggle, {
       label: "Temporal anti-aliasing", hint: "Edges smooth over the frames, along with what moves",
     });
+    const firefly_clamp = this.setting("firefly_clamp", make_slider, {
+      label: "Firefly clamp", values: kFireflyClamps, format: (value) => (value > 0 ? `${value} × mean` : "Off"),
+      hint: "The most that one sample may bring of bounced light. Takes light away: the figures tell how much",
+    });
     const hand_over = this.setting("hand_over", make_toggle, {
       label: "Reference when still", hint: "A picture that has stood still for a while goes over into the reference's",
     });
@@ -164,13 +169,13 @@ export class Panel {
       hint: "Samples and the indirect map become fewer and smaller where frames would take longer than for this rate",
     });
     this.keep(["settings"], ({ settings }) => {
-      for (const { row } of [temporal_antialiasing, target_fps]) row.hidden = settings.method !== "realtime";
+      for (const { row } of [temporal_antialiasing, firefly_clamp, target_fps]) row.hidden = settings.method !== "realtime";
       denoise.row.hidden = settings.method !== "thesis";  // realtime always does, reference never
       hand_over.row.hidden = settings.method === "reference";
     });
     return [
       method.row, samples.row, indirect_size.row, bounces.row, denoise.row, multiple_scattering.row,
-      temporal_antialiasing.row, target_fps.row, hand_over.row,
+      temporal_antialiasing.row, firefly_clamp.row, target_fps.row, hand_over.row,
     ];
   }
 

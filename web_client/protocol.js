@@ -210,7 +210,7 @@ const settings = object({}, {
   exposure_ev: nullable(number(-64, 64)), tone_map: token, seed: u32,
   background: nullable(array(number(0), 3, 3)), shadow_size: at_least_one, shadow_filter: at_least_one,
   denoise: boolean, multiple_scattering: boolean, temporal_antialiasing: boolean,
-  hand_over: boolean, target_fps: index, warm_up: index,
+  firefly_clamp: number(0, 1e6), hand_over: boolean, target_fps: index, warm_up: index,
 });
 
 const edit = (value, pointer) => {
@@ -269,7 +269,7 @@ const server_messages = {
   stats: object({
     fps: number(), render_ms: number(), encode_ms: number(),
     stages: array(object({ name: text, ms: number() }), 0, 256), rays: count, triangles: count,
-    exposure_ev: number(), accumulated: u32, method: token, time_s: time,
+    exposure_ev: number(), accumulated: u32, clamped_share: number(), method: token, time_s: time,
   }),
   error: object({ problem }, { seq: sequence }),
   pong: object({ t: number() }),

@@ -8,7 +8,7 @@ const kParts = [
   ["render", "Render"], ["encode", "Encode"], ["network", "Network and waiting"], ["show", "Decode and show"],
 ];
 const kCodecNames = { jpeg: "JPEG", png: "PNG", h264: "H.264" };
-const kFacts = ["Method", "Rays", "Triangles", "Picture", "Received", "Exposure", "Device"];
+const kFacts = ["Method", "Rays", "Triangles", "Picture", "Received", "Exposure", "Clamped light", "Device"];
 
 /** 1234567 as "1.23M", 1522 as "1,522". */
 export function short_number(value) {
@@ -31,6 +31,12 @@ const kMethodNames = { thesis: "Thesis", realtime: "Realtime", reference: "Refer
 export const method_name = (method) => kMethodNames[method] ?? method;
 
 const picture_fact = ({ width, height, codec }) => `${width} × ${height}, ${kCodecNames[codec]}`;
+
+/** Of the indirect light, what the firefly clamp has taken away. */
+function clamped_fact(settings, server) {
+  const clamps = settings?.firefly_clamp > 0 && server?.method === "realtime";
+  return clamps ? `${(100 * server.clamped_share).toPrecision(2)} %` : "–";
+}
 
 export class Stats {
   /** @param {object} model a SessionModel @param {HTMLElement} section the panel's place for it */
@@ -156,6 +162,7 @@ export class Stats {
       this.frame ? picture_fact(this.frame.header) : "–",
       `${((received * 8) / 1e6).toFixed(1)} Mbit/s`,
       this.server ? `${this.server.exposure_ev.toFixed(1)} EV` : "–",
+      clamped_fact(this.model.settings, this.server),
       this.model.device || "–",
     ];
     this.facts.querySelectorAll("dd").forEach((place, i) => write(place, facts[i]));

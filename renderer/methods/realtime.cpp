@@ -33,6 +33,10 @@ float frames_kept(const SceneChange& change, bool cache_carries, std::uint32_t s
   return change.light_share > 0.0f ? std::min(most, kKeptAfterChange * left_over_gone(change.light_share)) : most;
 }
 
+bool clamps(const Settings& settings) {
+  return settings.firefly_clamp > 0.0f && settings.bounces > 0;
+}
+
 }  // namespace
 
 RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
@@ -40,6 +44,7 @@ RealtimeMethod::RealtimeMethod(gl::ShaderLibrary& shaders, gl::BufferUse buffers
       lights_(PlainSky::kLeftToRays),
       punctual_light_pass_(shaders, buffers),
       samples_pass_(shaders, buffers),
+      firefly_clamp_pass_(shaders),
       cache_(shaders),
       reconstruction_pass_(shaders),
       compose_pass_(shaders),
@@ -100,8 +105,15 @@ const Picture& RealtimeMethod::compose(FrameContext& frame, const GBuffer& g_buf
   frame.timer.mark("compose");
   // Images in mirrors move by themselves: nothing tells where they were.
   const float kept = change_.moving ? std::min(kept_frames(settings), kReflectionsInMotion) : kept_frames(settings);
-  const PixelSampling sampling{g_buffer, lights_,    cache_,       indirect, previous_clip_from_world,
-                               kept,     all_rests_, frame_number_};
+  const PixelSampling sampling{g_buffer,
+                               lights_,
+                               cache_,
+                               indirect,
+                               previous_clip_from_world,
+                               kept,
+                               all_rests_,
+                               frame_number_,
+                               clamps(settings) ? &firefly_clamp_pass_ : nullptr};
   if (has_rays) {
     pixel_lists_.count();
     unmatched_pass_.run(frame, picture, pixel_lists_.unmatched(), pixel_lists_.unmatched_count(), sampling);
@@ -142,12 +154,15 @@ PatchGrid RealtimeMethod::grid_of(const FrameContext& frame) const {
 ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuffer& g_buffer,
                                                 const glm::mat4& previous_clip_from_world) {
   const PatchGrid grid = grid_of(frame);
-  samples_pass_.resize(grid);
+  samples_pass_.resize(grid, clamps(frame.settings));
   reconstruction_pass_.resize(grid.map_size_px);
+  if (!clamps(frame.settings)) firefly_clamp_pass_.forget();
   if (frame.settings.bounces == 0) return reconstruction_pass_.nothing();
   cache_.begin_frame(frame.pose, change_);
   const std::uint32_t stride = frame_number_ - filled_from_ < kFillingFrames ? 1 : kPathStride;
   const PatchSamples& samples = samples_pass_.run(frame, g_buffer, lights_, cache_, grid, stride);
+  if (clamps(frame.settings))
+    firefly_clamp_pass_.run_over_map(frame, g_buffer, samples, grid, kept_frames(frame.settings));
   const ReconstructedMap map = reconstruction_pass_.run(g_buffer, frame.scene, samples, grid, previous_clip_from_world,
                                                         kept_frames(frame.settings));
   frame.timer.mark("reconstruction");

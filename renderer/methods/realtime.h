@@ -7,6 +7,7 @@
 #include "renderer/methods/frame_context.h"
 #include "renderer/methods/realtime_front.h"
 #include "renderer/passes/compose.h"
+#include "renderer/passes/firefly_clamp.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/history_view.h"
 #include "renderer/passes/instance_motion.h"
@@ -30,6 +31,10 @@ class RealtimeMethod {
   /// What Settings::target_fps goes by: to be asked before a frame, and told after it.
   FrameBudget& budget() { return budget_; }
 
+  /// Of all indirect light of the frames before, as much as the history keeps of each, the share that
+  /// Settings::firefly_clamp has taken away, 0 to 1. Once the device has done the frame.
+  float clamped_share() const { return firefly_clamp_pass_.share(); }
+
   /// The number of the next frame: how its picture is to be shifted.
   std::uint32_t frame_number() const { return frame_number_; }
 
@@ -52,6 +57,7 @@ class RealtimeMethod {
   LightTable lights_;
   PunctualLightPass punctual_light_pass_;
   PatchSamplesPass samples_pass_;
+  FireflyClampPass firefly_clamp_pass_;
   RadianceCache cache_;
   ReconstructionPass reconstruction_pass_;
   ComposePass compose_pass_;

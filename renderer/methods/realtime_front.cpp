@@ -33,7 +33,8 @@ const Picture& RealtimeFront::run(FrameContext& frame, const Picture& behind, co
                                sampling.previous_clip_from_world,
                                sampling.kept_frames,
                                sampling.all_rests,
-                               sampling.frame_number};
+                               sampling.frame_number,
+                               sampling.firefly_clamp};
   reflections_pass_.run(frame, picture, pixel_lists_.reflecting(), pixel_lists_.reflecting_count(), of_front);
   return picture;
 }

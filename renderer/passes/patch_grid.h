@@ -21,6 +21,11 @@ struct PatchGrid {
   std::uint32_t samples() const { return texels() * rays_per_texel; }
 };
 
+/// Where in the light of samples that begins which has not bounced: behind two places a ray and the lamps' one a texel.
+inline std::uint32_t first_direct(const PatchGrid& grid) {
+  return 2 * grid.samples() + grid.texels();
+}
+
 class PatchGridUniforms {
  public:
   explicit PatchGridUniforms(const gl::ProgramPtr& program)

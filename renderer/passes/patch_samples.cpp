@@ -58,10 +58,10 @@ PatchSamplesPass::PatchSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buf
 
 PatchSamplesPass::~PatchSamplesPass() = default;
 
-void PatchSamplesPass::resize(const PatchGrid& grid) {
+void PatchSamplesPass::resize(const PatchGrid& grid, bool tells_direct) {
   const std::uint64_t paths = grid.samples();
   Slots& s = *slots_;
-  s.first.resize(paths, paths + grid.texels(), 1);
+  s.first.resize(paths, paths + grid.texels(), 1, tells_direct);
   if (s.walkers != grid.samples() / kSamplesPerWalker) {
     s.walkers = grid.samples() / kSamplesPerWalker;
     for (SampleWave* wave : {s.next.get(), s.later.get()}) {
@@ -72,6 +72,7 @@ void PatchSamplesPass::resize(const PatchGrid& grid) {
   }
   samples_.states.attach(s.first.states);
   samples_.light.attach(s.first.light);
+  samples_.light_buffer = &s.first.light;
   samples_.visible.attach(s.first.visible);
 }
 
@@ -138,6 +139,7 @@ void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& li
   if (meeting.first) {
     defines.emplace_back("FIRST_HITS 1");
     defines = gl::joined(defines, SmoothPathsPass::defines(frame.scene, SmoothPathsPass::Kind::kMirrors));
+    if (frame.settings.firefly_clamp > 0.0f) defines.emplace_back("FIREFLY_CLAMP 1");
   }
   SampleHitsProgram& variant = programs_->hits.with(defines);
   variant.grid.set(grid);
@@ -146,6 +148,7 @@ void PatchSamplesPass::meet_hits(const FrameContext& frame, const LightTable& li
   variant.path_stride = meeting.stride;
   variant.path_phase = meeting.phase;
   variant.first_next = meeting.first_onward;
+  variant.first_direct = first_direct(grid);
   variant.most_next = meeting.most_onward;
   variant.most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
   const int bounce = meeting.first ? 1 : 2;

@@ -16,6 +16,7 @@ namespace lightwell {
 struct PatchSamples {
   gl::BufferTexture states{"sample states", GL_RGBA32F};
   gl::BufferTexture light{"light of samples", GL_RGBA32F};
+  const gl::Buffer* light_buffer = nullptr;  // the same
   gl::BufferTexture visible{"visible lights", GL_R32UI};
   gl::BufferTexture next_states{"next states", GL_RGBA32F};
   gl::BufferTexture next_light{"light of next hits", GL_RGBA32F};
@@ -30,7 +31,8 @@ class PatchSamplesPass {
   PatchSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers);
   ~PatchSamplesPass();
 
-  void resize(const PatchGrid& grid);
+  /// `tells_direct`: what has not bounced lies behind the light of the lamps, see first_direct().
+  void resize(const PatchGrid& grid, bool tells_direct);
 
   /// `lights` is bound. Paths go on from one of `path_stride` hits. Bounces 1 and 2 end where they say; from 3 on the
   /// cache carries all that follow.

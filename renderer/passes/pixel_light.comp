@@ -34,7 +34,6 @@ uniform float all_rests;  // 1: neither the camera nor anything in the scene has
 const float kLeastCosine = 0.98;
 const float kFarthest_m = 1e6;      // where the sky's image lies
 const float kMostFarther = 0.1;     // of the image's distance, for images to be the same
-const float kMirrorAlpha = 0.0025;  // of a smoother surface all rays of a pixel go to the same place
 const float kGreatest = 1e15;
 
 // What was known of a pixel a frame ago, if it was of this surface.

@@ -69,7 +69,7 @@ void PixelSamplesPass::run(FrameContext& frame, const Picture& picture, const gl
   grid.rays_per_texel = kind_ == Kind::kUnmatched ? kRaysOfUnmatched : refracts(frame.scene) ? 2 : 1;
   grid.frame_number = sampling.frame_number;
   grid.seed = frame.settings.seed;
-  wave_.resize(grid.samples(), grid.samples() + grid.texels(), 1);
+  wave_.resize(grid.samples(), grid.samples() + grid.texels(), 1, sampling.firefly_clamp != nullptr);
   list_texels_.attach(list);
   list_texels_.bind(UNIT_PIXEL_LIST);
   sample_surfaces(frame, sampling, grid);
@@ -82,6 +82,7 @@ void PixelSamplesPass::run(FrameContext& frame, const Picture& picture, const gl
   clear_shadows_.run(frame, wave_.shadow_rays, shadow_rays, wave_.visible,
                      {wave_.light, 1, 2, grid.samples(), 2 * grid.samples()}, false);
   frame.rays += grid.samples() + shadow_rays;
+  if (sampling.firefly_clamp) clamp_fireflies(frame, sampling, grid);
   add_light(frame, picture, sampling, grid);
   frame.timer.mark(stage_of(kind_));
 }
@@ -118,6 +119,7 @@ void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling&
                                    gl::joined(frame.scene.environment_defines(), sampling.lights.defines()));
   defines = gl::joined(gl::joined(defines, this->defines(frame.scene)), ClearSamplesPass::defines(frame.scene));
   defines.emplace_back("FIRST_HITS 1");
+  if (sampling.firefly_clamp) defines.emplace_back("FIREFLY_CLAMP 1");
   if (kind_ != Kind::kUnmatched)
     defines = gl::joined(defines, SmoothPathsPass::defines(frame.scene, SmoothPathsPass::Kind::kImages));
   SampleHitsProgram& variant = hits_.with(defines);
@@ -126,6 +128,7 @@ void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling&
   variant.path_count = grid.samples();
   variant.path_stride = 1;
   variant.path_phase = 1;
+  variant.first_direct = first_direct(grid);
   const int beyond = frame.settings.bounces > 1 ? 1 : 0;
   variant.most_bounces = static_cast<std::uint32_t>(frame.settings.bounces);
   variant.lamps_light_hits = beyond;
@@ -139,6 +142,17 @@ void PixelSamplesPass::meet_hits(const FrameContext& frame, const PixelSampling&
   wave_.light.bind_storage(BINDING_SAMPLE_LIGHT);
   variant.program->dispatch(grid.samples());
   glMemoryBarrier(kBetweenSampleStages);
+}
+
+void PixelSamplesPass::clamp_fireflies(const FrameContext& frame, const PixelSampling& sampling,
+                                       const PatchGrid& grid) {
+  light_texels_.attach(wave_.light);
+  visible_texels_.attach(wave_.visible);
+  state_texels_.bind(UNIT_SAMPLE_STATES);
+  light_texels_.bind(UNIT_SAMPLE_LIGHT);
+  visible_texels_.bind(UNIT_SAMPLE_VISIBLE);
+  sampling.g_buffer.bind();
+  sampling.firefly_clamp->run_over_pixels(frame, wave_.light, grid, sampling.lights.has_sized(), defines(frame.scene));
 }
 
 void PixelSamplesPass::add_light(const FrameContext& frame, const Picture& picture, const PixelSampling& sampling,

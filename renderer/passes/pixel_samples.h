@@ -7,6 +7,7 @@
 #include "renderer/passes/clear_samples.h"
 #include "renderer/passes/clear_shadows.h"
 #include "renderer/passes/compose.h"
+#include "renderer/passes/firefly_clamp.h"
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/light_table.h"
 #include "renderer/passes/pixel_lists.h"
@@ -27,6 +28,7 @@ struct PixelSampling {
   float kept_frames = 0.0f;  // that reflections found before count for at most
   bool all_rests = false;    // neither camera nor scene has moved since the frame before
   std::uint32_t frame_number = 0;
+  FireflyClampPass* firefly_clamp = nullptr;  // null: off
 };
 
 class PixelSamplesPass {
@@ -58,6 +60,7 @@ class PixelSamplesPass {
   gl::Defines defines(const DeviceScene& scene) const;
   void sample_surfaces(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid);
   void meet_hits(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid);
+  void clamp_fireflies(const FrameContext& frame, const PixelSampling& sampling, const PatchGrid& grid);
   void add_light(const FrameContext& frame, const Picture& picture, const PixelSampling& sampling,
                  const PatchGrid& grid);
 

@@ -3,6 +3,7 @@
 // comes along them fills the cache. FIRST_HITS: along the rays from pixels; else along those from hits.
 // SMOOTH_PATHS, MIRRORS_ALONE: rays may have come by way of mirrors, see smooth_paths.comp.
 // CLEAR_SURFACES: rays may have come through some, see clear_samples.comp.
+// FIREFLY_CLAMP: what comes straight from lamps and the sky is told apart, see firefly_clamp.comp.
 layout(local_size_x = 64) in;
 
 #include "passes/bindings.glsl"
@@ -36,7 +37,7 @@ layout(binding = UNIT_CLEARED) uniform samplerBuffer tints;
 layout(binding = UNIT_SAMPLE_STATES) uniform samplerBuffer states_in;  // a: density of the ray
 // All is written once, at the end, and by four words: on a software device every store is a loop over the lanes.
 layout(std430, binding = BINDING_SAMPLE_SHADOW_RAYS) writeonly buffer ShadowRays { vec4 shadow_rays[]; };  // 2 a ray
-// Two a slot: what is known; what waits for the shadow ray.
+// Two a slot: what is known; what waits for the shadow ray. From first_direct on, one a slot: of the known, what has not bounced.
 layout(std430, binding = BINDING_SAMPLE_LIGHT) writeonly buffer SampleLight { vec4 light[]; };
 // Of paths that go on, two a path each: rays; reflectance and density, and the cells that the path fills.
 layout(std430, binding = BINDING_SAMPLE_RAYS) writeonly buffer Rays { vec4 next_rays[]; };
@@ -47,6 +48,9 @@ uniform uint path_stride;     // of every so many slots one's path goes on
 uniform uint path_phase;      // which one
 uniform uint first_next;      // the first place for a path that goes on, and how many there are
 uniform uint most_next;
+#ifdef FIREFLY_CLAMP
+uniform uint first_direct;
+#endif
 uniform int lamps_light_hits;  // 0: punctual lights alone, in the last bounce
 uniform int cache_lights_hits; // 0: not in the last bounces
 #ifdef SMOOTH_PATHS
@@ -126,6 +130,7 @@ struct Cells {
 // What a path finds, and how it goes on.
 struct Step {
   vec3 known;
+  vec3 direct;      // of it, what comes straight from a lamp or the sky
   vec3 waiting;     // for the shadow ray
   Ray shadow_ray;
   Ray ray;
@@ -227,7 +232,7 @@ PathVertex vertex_of(uint slot) {
 }
 
 Step nothing() {
-  return Step(vec3(0.0), vec3(0.0), kNoRay, kNoRay, vec3(0.0), 0.0, Cells(kNoCell, kNoCell), -1.0, false);
+  return Step(vec3(0.0), vec3(0.0), vec3(0.0), kNoRay, kNoRay, vec3(0.0), 0.0, Cells(kNoCell, kNoCell), -1.0, false);
 }
 
 Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
@@ -250,10 +255,12 @@ Step meet_surface(PathVertex at, Hit hit, bool goes_on) {
 #ifdef FIRST_HITS
   next.own_path = goes_on && bounced.samples < kFewSamples && !is_for_lamps_alone(at);
 #endif
-  next.known = emission_of(at, hit, point);
+  next.direct = emission_of(at, hit, point);
+  next.known = next.direct;
   if (cache_lights(at) && !next.own_path && !is_for_lamps_alone(at)) next.known += bounced.light * reflected_share;
   const vec3 arriving = lit ? absorbed_on_the_way(at, hit, point) : vec3(0.0);
   next.known *= arriving;
+  next.direct *= arriving;
   next.waiting *= arriving;
   next.distance_m = hit.t;
   if (lit) {
@@ -270,6 +277,9 @@ void write(PathVertex at, Step next) {
   shadow_rays[2u * slot + 1u] = vec4(next.shadow_ray.direction_ws, next.shadow_ray.t_max);
   light[2u * slot] = vec4(next.known, next.distance_m);
   light[2u * slot + 1u] = vec4(next.waiting, next.own_path ? 1.0 : 0.0);
+#ifdef FIREFLY_CLAMP
+  light[first_direct + slot] = vec4(next.direct, 0.0);
+#endif
   if (at.next == kNowhere) return;
   next_rays[2u * at.next] = vec4(next.ray.origin_ws, next.ray.t_min);
   next_rays[2u * at.next + 1u] = vec4(next.ray.direction_ws, next.ray.t_max);
@@ -290,10 +300,12 @@ void main() {
   if (missed) {
     next = nothing();
     next.known = at.ray.t_max > 0.0 ? sky : vec3(0.0);
+    next.direct = next.known;
   }
 #ifdef CLEAR_SURFACES
   const vec3 tint = texelFetch(tints, int(at.slot)).rgb;
   next.known *= tint;
+  next.direct *= tint;
   next.waiting *= tint;
 #endif
   write(at, next);

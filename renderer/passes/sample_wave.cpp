@@ -10,13 +10,13 @@ SampleWave::SampleWave(gl::BufferUse use)
       states("sample states", 0),
       light("light of samples", 0) {}
 
-void SampleWave::resize(std::uint64_t paths, std::uint64_t shadow_paths, std::uint64_t state_words) {
+void SampleWave::resize(std::uint64_t paths, std::uint64_t shadow_paths, std::uint64_t state_words, bool tells_direct) {
   rays.reserve(paths * sizeof(Ray));
   shadow_rays.reserve(shadow_paths * sizeof(Ray));
   hits.reserve((paths + 2) * sizeof(Hit));  // read four words at a time
   visible.reserve((shadow_paths + 31) / 32 * sizeof(std::uint32_t));
   states.reserve(paths * state_words * sizeof(glm::vec4));
-  light.reserve((paths + shadow_paths) * sizeof(glm::vec4));
+  light.reserve((paths + shadow_paths + (tells_direct ? paths : 0)) * sizeof(glm::vec4));
   ray_texels.attach(rays);
   hit_texels.attach(hits);
 }
@@ -32,6 +32,7 @@ SampleHitsProgram::SampleHitsProgram(const gl::ProgramPtr& p)
       first_next(p, "first_next"),
       most_next(p, "most_next"),
       most_bounces(p, "most_bounces"),
+      first_direct(p, "first_direct"),
       lamps_light_hits(p, "lamps_light_hits"),
       cache_lights_hits(p, "cache_lights_hits") {}
 

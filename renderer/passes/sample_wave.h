@@ -16,7 +16,8 @@ struct SampleWave {
   /// `use`: host-visible for a native tracer.
   explicit SampleWave(gl::BufferUse use);
   /// Room for `paths` rays with `state_words` vec4 of state each, and for `shadow_paths` shadow rays.
-  void resize(std::uint64_t paths, std::uint64_t shadow_paths, std::uint64_t state_words);
+  /// `tells_direct`: and for what of each ray's light has not bounced, behind the rest of its light.
+  void resize(std::uint64_t paths, std::uint64_t shadow_paths, std::uint64_t state_words, bool tells_direct = false);
 
   gl::Buffer rays, shadow_rays, hits, visible, states, light;
   gl::BufferTexture ray_texels{"sample rays", GL_RGBA32F}, hit_texels{"sample hits", GL_RGBA32UI};
@@ -39,7 +40,7 @@ struct SampleHitsProgram {
   PatchGridUniforms grid;
   LightTableUniforms lights;
   RadianceCacheUniforms cache;
-  gl::Uniform<std::uint32_t> path_count, path_stride, path_phase, first_next, most_next, most_bounces;
+  gl::Uniform<std::uint32_t> path_count, path_stride, path_phase, first_next, most_next, most_bounces, first_direct;
   gl::Uniform<int> lamps_light_hits, cache_lights_hits;
 };
 

@@ -2,6 +2,7 @@
 // it, and the map holds all else. SMOOTH_SURFACES: there may be some. Needs brdf.
 
 const float kSmoothAlpha = 0.0625;  // roughness 0.25; rougher ones blur over a patch
+const float kMirrorAlpha = 0.0025;  // of a smoother surface all rays of a pixel go to the same place
 
 // Lobes above or below the base would have to be told from it.
 bool is_smooth(Brdf brdf) {

@@ -18,7 +18,7 @@ uniform uint first_next;             // the place of the first path that went on
 
 bool is_visible(uint slot) { return (texelFetch(visible, int(slot / 32u)).x >> (slot & 31u) & 1u) != 0u; }
 
-vec3 light_of_ray(uint slot) {
+vec3 arriving_along_ray(uint slot) {
   const vec4 known = texelFetch(light, int(2u * slot));
   const vec4 waiting = texelFetch(light, int(2u * slot + 1u));
   vec3 arriving = known.rgb + (is_visible(slot) ? waiting.rgb : vec3(0.0));
@@ -28,15 +28,19 @@ vec3 light_of_ray(uint slot) {
     arriving += texelFetch(next_states, next).rgb * texelFetch(next_light, next).rgb;
   }
 #endif
-  return arriving * texelFetch(states, int(slot)).rgb;
+  return arriving;
+}
+
+vec3 light_of_ray(uint slot) { return arriving_along_ray(slot) * texelFetch(states, int(slot)).rgb; }
+
+vec3 light_of_lamp(uint texel_index) {
+  const bool lit = lamps_sampled == 1 && is_visible(sample_count + texel_index);
+  return lit ? texelFetch(light, int(2u * sample_count + texel_index)).rgb : vec3(0.0);
 }
 
 vec3 light_of_samples(uint texel_index) {
   const uint texels = uint(map_size_px.x * map_size_px.y);
   vec3 sum = vec3(0.0);
   for (uint ray = 0u; ray < rays_per_texel; ++ray) sum += light_of_ray(ray * texels + texel_index);
-  sum /= float(rays_per_texel);
-  if (lamps_sampled == 1 && is_visible(sample_count + texel_index))
-    sum += texelFetch(light, int(2u * sample_count + texel_index)).rgb;
-  return sum;
+  return sum / float(rays_per_texel) + light_of_lamp(texel_index);
 }

@@ -128,7 +128,8 @@ std::vector<std::pair<std::string, std::string>> AccessControl::answer_fields(co
   if (!origin_listed(origin)) return fields;
   fields.emplace_back("Access-Control-Allow-Origin", origin);
   fields.emplace_back("Access-Control-Expose-Headers",
-                      "ETag, Location, Retry-After, Server-Timing, X-Lightwell-Rays, X-Lightwell-Exposure-Ev");
+                      "ETag, Location, Retry-After, Server-Timing, X-Lightwell-Rays, X-Lightwell-Exposure-Ev, "
+                      "X-Lightwell-Clamped-Share");
   return fields;
 }
 

@@ -49,6 +49,8 @@ std::map<std::string, std::string> exr_metadata(const RenderArguments& arguments
           {"lightwell:denoise", settings.denoise ? "true" : "false"},
           {"lightwell:multiple_scattering", settings.multiple_scattering ? "true" : "false"},
           {"lightwell:temporal_antialiasing", settings.temporal_antialiasing ? "true" : "false"},
+          {"lightwell:firefly_clamp", std::to_string(settings.firefly_clamp)},
+          {"lightwell:clamped_share", std::to_string(frame.clamped_share)},
           {"lightwell:photon_guides", settings.photon_guides ? "true" : "false"},
           {"lightwell:target_fps", std::to_string(settings.target_fps)},
           {"lightwell:warm_up", std::to_string(settings.warm_up)},
@@ -102,7 +104,8 @@ void RenderReport::add_picture(const std::string& file, double time_s, const Fra
                                {"rays", frame.rays},
                                {"triangles", frame.triangles},
                                {"exposure_ev", frame.exposure_ev},
-                               {"accumulated", frame.accumulated}});
+                               {"accumulated", frame.accumulated},
+                               {"clamped_share", frame.clamped_share}});
 }
 
 void RenderReport::print() const {

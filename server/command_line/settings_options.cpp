@@ -36,6 +36,10 @@ Result<float> parse_depth_threshold(const std::string& text) {
   return parse_float(text, 0.0, 10.0);
 }
 
+Result<float> parse_firefly_clamp(const std::string& text) {
+  return parse_float(text, 0.0, kMostFireflyClamp);
+}
+
 Result<int> parse_bounces(const std::string& text) {
   if (text == "inf") return kUnlimitedBounces;
   const Result<long long> bounces = parse_integer(text, 0, 64);
@@ -122,6 +126,11 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
                "Keep the light that bounces between the microfacets of rough surfaces");
   app.add_flag("--temporal-antialiasing,!--no-temporal-antialiasing", settings.temporal_antialiasing,
                "Smooth realtime's edges over its frames, along with what moves");
+  add_parsed(
+      app, "--firefly-clamp", settings.firefly_clamp, parse_firefly_clamp, "TIMES",
+      "realtime: what one sample brings of light that has bounced is at most so many times what samples bring in "
+      "the mean, 10 to 100 where specks are to go; takes light away, --json tells how much; 0: off",
+      fmt::format("{}", settings.firefly_clamp));
   add_integer(
       app, "--target-fps", settings.target_fps, 0, 240,
       "Frames a second of realtime: --samples and --indirect-size are the most, less is taken where it is needed; "

@@ -37,7 +37,8 @@ Response picture_response(const Frame& frame, protocol::ImageFormat format) {
           {{"Server-Timing", timing},
            {"Cache-Control", "no-store"},
            {"X-Lightwell-Rays", std::to_string(frame.rays)},
-           {"X-Lightwell-Exposure-Ev", fmt::format("{:.4f}", frame.exposure_ev)}}};
+           {"X-Lightwell-Exposure-Ev", fmt::format("{:.4f}", frame.exposure_ev)},
+           {"X-Lightwell-Clamped-Share", fmt::format("{:.6f}", frame.clamped_share)}}};
 }
 
 }  // namespace lightwell::http

@@ -248,6 +248,7 @@ void Director::describe(const Take& take, const Frame& frame, Picture& picture) 
   stats.triangles = frame.triangles;
   stats.exposure_ev = frame.exposure_ev;
   stats.accumulated = frame.accumulated;
+  stats.clamped_share = frame.clamped_share;
   stats.method = name_of(take.method);
   stats.time_s = take.request.time_s;
 }

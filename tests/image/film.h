@@ -34,8 +34,12 @@ class Film {
     EXPECT_TRUE(frame.ok()) << (frame.ok() ? "" : frame.error().message());
     for (const std::string& message : shared_renderer().context().take_debug_messages())
       ADD_FAILURE() << "GL: " << message;
+    clamped_share_ = frame ? frame->clamped_share : 0.0f;
     return {request_.size_px, frame ? std::move(frame->linear_rgb) : std::vector<float>(3)};
   }
+
+  /// Frame::clamped_share of the last one.
+  float clamped_share() const { return clamped_share_; }
 
   /// Renders a frame; whether it was given up.
   bool is_given_up(const Scene& scene) {
@@ -55,6 +59,7 @@ class Film {
  private:
   std::unique_ptr<RenderView> view_;
   FrameRequest request_;
+  float clamped_share_ = 0.0f;
 };
 
 /// Within a room from -1 to 1.

@@ -103,7 +103,7 @@ class UsageTest(CommandLineTest):
                       ["--bounces", "65"], ["--indirect-size", "7"], ["--estimator", "wrong"], ["--spp", "0"],
                       ["--patch", "3"], ["--patch", "0"], ["--patch", "17"], ["--triangle-groups", "0"],
                       ["--triangle-groups", "65"], ["--normal-threshold", "1.1"], ["--depth-threshold", "-0.1"],
-                      ["--depth-threshold", "nan"], ["--similarity", "none"], ["--view-index", "-1"],
+                      ["--depth-threshold", "nan"], ["--firefly-clamp", "-1"], ["--firefly-clamp", "1000001"], ["--similarity", "none"], ["--view-index", "-1"],
                       ["--shadow-size", "63"], ["--shadow-filter", "4"], ["--time", "-1"], ["--time", "nan"],
                       ["--fps", "24"], ["--frames", "4:1"], ["--frames", "0:3"], ["--camera", "-1"],
                       ["--camera", "0", "--eye", "0,0,1", "--target", "0,0,0"], ["--eye", "0,0,1"],
@@ -267,7 +267,7 @@ class RenderTest(CommandLineTest):
                        ["--patch", "4"], ["--patch", "2", "--triangle-groups", "3", "--no-trace-missed"],
                        ["--patch", "8", "--similarity", "literal", "--normal-threshold", "0.5", "--depth-threshold", "1"],
                        ["--view", "bounce", "--view-index", "1"], ["--view", "patch", "--patch", "4"],
-                       ["--multiple-scattering"], ["--method", "realtime", "--temporal-antialiasing"],
+                       ["--multiple-scattering"], ["--method", "realtime", "--temporal-antialiasing"], ["--method", "realtime", "--firefly-clamp", "10"],
                        ["--method", "realtime", "--target-fps", "30"], ["--environment-rotation", "90", "--environment-strength", "2"],
                        ["--shadow-size", "64", "--shadow-filter", "1"], ["--background", "0.1,0.2,0.3"],
                        ["--camera", "0"], ["--eye", "0,1,3", "--target", "0,1,0", "--yfov", "60"],
@@ -299,6 +299,12 @@ class RenderTest(CommandLineTest):
         self.assertEqual(3, picture["accumulated"])
         self.assertGreater(picture["rays"], 0)
         self.assertTrue(all(stage["ms"] >= 0 for stage in picture["stages"]))
+        self.assertEqual(0, picture["clamped_share"])
+
+    def test_the_firefly_clamp_tells_what_it_takes(self):
+        report = json.loads(self.render("a.exr", "--json", "--method", "realtime", "--firefly-clamp", "0.5").stdout)
+        self.assertGreater(report["pictures"][0]["clamped_share"], 0.05)
+        self.assertLess(report["pictures"][0]["clamped_share"], 1)
 
     def test_more_samples_come_closer(self):
         self.render("reference.exr", "--spp", "64", "--seed", "9")

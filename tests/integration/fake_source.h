@@ -113,6 +113,7 @@ class FakeSource : public PictureSource {
     frame.stages = {{"shadow maps", 0.25}, {"trace", 0.5}};
     frame.total_ms = studio_->render_ms;
     frame.rays = pixels;
+    frame.clamped_share = 0.125f;
     return frame;
   }
 

@@ -14,6 +14,7 @@ TEST_F(RenderingsTest, RendersInThreeFormats) {
   EXPECT_TRUE(png.body.starts_with("\x89PNG"));
   EXPECT_NE(png.field("Server-Timing").find("shadow-maps;dur=0.250"), std::string::npos);
   EXPECT_EQ(png.field("X-Lightwell-Rays"), "512");
+  EXPECT_EQ(png.field("X-Lightwell-Clamped-Share"), "0.125000");
 
   json jpeg = request;
   jpeg["format"] = "jpeg";

@@ -125,7 +125,7 @@ TEST(OpenApi, ListsEverySettingAndNoOther) {
   all.method = all.estimator = all.view = all.tone_map = "x";
   all.samples = all.bounces = all.indirect_size = all.shadow_size = all.shadow_filter = 1;
   all.view_index = all.patch = all.triangle_groups = all.target_fps = all.warm_up = 1;
-  all.normal_threshold = all.depth_threshold = 0.5;
+  all.normal_threshold = all.depth_threshold = all.firefly_clamp = 0.5;
   all.similarity = "x";
   all.trace_missed = true;
   all.exposure_ev.emplace();
