@@ -158,7 +158,7 @@ struct Renderer::State {
         buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
         view_rasterizer(make_view_rasterizer(options.seen_by, *tracer, context->device().software)),
         view_choice{view_rasterizer.get(), options.seen_by == SeenBy::kProcessor},
-        device_scene(buffers),
+        device_scene(shaders, buffers),
         camera("camera", sizeof(CameraBlock)) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -253,7 +253,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     const Pose pose = pose_at(scene, request.time_s);
     state_->device_scene.prepare(scene, pose, request.settings.multiple_scattering);
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
-    const TraceScene trace_scene{pose.instances, coverage};
+    const TraceScene trace_scene{pose.instances, coverage, state_->device_scene.positions()};
     state_->tracer->update(trace_scene);
     if (state_->view_rasterizer) state_->view_rasterizer->update(trace_scene);
     view.accumulated = request.accumulate ? view.accumulated : 0;

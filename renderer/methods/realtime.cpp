@@ -61,7 +61,7 @@ const Picture& RealtimeMethod::render(FrameContext& frame, const Scene& scene, c
   if (change_.light_share > kGreatChange) filled_from_ = frame_number_;
   lights_.prepare(scene, frame.pose);
   lights_.bind();
-  motion_.follow(frame.pose);
+  motion_.follow(frame.pose, frame.trace_scene.device_positions);
   g_buffer_pass_.resize(frame.size_px);
   const GBuffer& g_buffer =
       g_buffer_pass_.run(frame.scene, frame.camera, frame.settings.seed + frame_number_, &motion_,

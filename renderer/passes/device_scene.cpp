@@ -24,7 +24,7 @@ bool may_be_smooth(const DeviceMaterial& material) {
 
 }  // namespace
 
-DeviceScene::DeviceScene(gl::BufferUse buffers)
+DeviceScene::DeviceScene(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : instances_("instances", 0, buffers),
       materials_("materials", 0, buffers),
       draw_commands_("draws", 0),
@@ -33,6 +33,7 @@ DeviceScene::DeviceScene(gl::BufferUse buffers)
       triangle_texels_("triangles", GL_RGBA32UI),
       instance_texels_("instances", GL_RGBA32UI),
       material_texels_("materials", GL_RGBA32UI),
+      shaders_(shaders),
       buffers_(buffers) {
   glCreateVertexArrays(1, &vertex_array_);
 }
@@ -45,10 +46,12 @@ void DeviceScene::prepare(const Scene& scene, const Pose& pose, bool multiple_sc
   use_geometry(pose);
   use_textures(scene);
   upload_materials(scene);
+  const std::vector<DeformTask> deformed = place_instances(pose);
   upload_instances(scene, pose);
   environment_ = scene.environment;
   set_defines(scene, pose, multiple_scattering);
   attach_buffers();
+  if (!deformed.empty()) deform(deformed);
   set_vertex_array();
 }
 
@@ -142,16 +145,37 @@ void DeviceScene::upload_materials(const Scene& scene) {
   materials_.upload(std::span<const DeviceMaterial>(packed));
 }
 
-void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
+// Deformed ones stand behind all that is rigid.
+std::vector<DeformTask> DeviceScene::place_instances(const Pose& pose) {
   DeviceGeometry& geometry = *geometries_.front();
-  std::uint32_t deformed_vertices = 0, deformed_triangles = 0;
+  std::vector<DeformTask> tasks;
+  std::uint32_t next_vertex = geometry.rigid_vertices(), next_triangle = geometry.rigid_triangles();
+  first_vertices_.clear();
+  first_triangles_.clear();
   for (const Instance& instance : pose.instances) {
+    const std::size_t primitive = geometry.number_of(instance.primitive);
+    first_vertices_.push_back(instance.deformed ? next_vertex : geometry.first_vertex(primitive));
+    first_triangles_.push_back(instance.deformed ? next_triangle : geometry.first_index(primitive) / 3);
     if (!instance.deformed) continue;
-    deformed_vertices += static_cast<std::uint32_t>(instance.deformed->positions.size());
-    deformed_triangles += static_cast<std::uint32_t>(instance.primitive->indices.size() / 3);
+    tasks.push_back({instance.deformed, primitive, next_vertex, next_triangle});
+    next_vertex += static_cast<std::uint32_t>(instance.primitive->positions.size());
+    next_triangle += static_cast<std::uint32_t>(instance.primitive->indices.size() / 3);
   }
-  if (deformed_vertices > 0) geometry.reserve_deformed(deformed_vertices, deformed_triangles);
+  if (!tasks.empty())
+    geometry.reserve_deformed(next_vertex - geometry.rigid_vertices(), next_triangle - geometry.rigid_triangles());
+  return tasks;
+}
 
+void DeviceScene::deform(const std::vector<DeformTask>& tasks) {
+  if (!deformer_) deformer_.emplace(shaders_);
+  position_texels_.bind(UNIT_POSITIONS);
+  vertex_texels_.bind(UNIT_VERTICES);
+  triangle_texels_.bind(UNIT_TRIANGLES);
+  deformer_->run(tasks, *geometries_.front());
+}
+
+void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
+  const DeviceGeometry& geometry = *geometries_.front();
   struct DrawCommand {
     std::uint32_t count, instance_count, first_index;
     std::int32_t base_vertex;
@@ -160,33 +184,22 @@ void DeviceScene::upload_instances(const Scene& scene, const Pose& pose) {
   std::vector<DrawCommand> commands[3];
   std::vector<DeviceInstance> packed;
   packed.reserve(pose.instances.size());
-  std::uint32_t next_vertex = geometry.rigid_vertices(), next_triangle = geometry.rigid_triangles();
   triangles_ = 0;
   for (const Instance& instance : pose.instances) {
-    const auto& known = geometry.primitives();
-    const auto primitive =
-        static_cast<std::size_t>(std::lower_bound(known.begin(), known.end(), instance.primitive) - known.begin());
+    const std::size_t number = packed.size();
     const std::uint32_t material = instance.material >= 0 ? static_cast<std::uint32_t>(instance.material)
                                                           : static_cast<std::uint32_t>(scene.materials.size());
     const auto count = static_cast<std::uint32_t>(instance.primitive->indices.size());
-    std::uint32_t first_vertex = geometry.first_vertex(primitive);
-    std::uint32_t first_triangle = geometry.first_index(primitive) / 3;
-    if (instance.deformed) {
-      first_vertex = next_vertex;
-      first_triangle = next_triangle;
-      geometry.upload_deformed(*instance.primitive, *instance.deformed, first_vertex, first_triangle);
-      next_vertex += static_cast<std::uint32_t>(instance.deformed->positions.size());
-      next_triangle += count / 3;
-    }
-    packed.push_back(pack_instance(instance.world_from_object, first_vertex, first_triangle, material));
+    packed.push_back(
+        pack_instance(instance.world_from_object, first_vertices_[number], first_triangles_[number], material));
     const bool double_sided = instance.material >= 0 && scene.materials[material].double_sided;
     const bool mirrored = (packed.back().flags & kDeviceInstanceMirrored) != 0;
     const DrawGroup group = double_sided ? DrawGroup::kDoubleSided
                             : mirrored   ? DrawGroup::kCulledMirrored
                                          : DrawGroup::kCulled;
-    commands[static_cast<std::size_t>(group)].push_back({count, 1, geometry.first_index(primitive),
-                                                         static_cast<std::int32_t>(first_vertex),
-                                                         static_cast<std::uint32_t>(packed.size() - 1)});
+    commands[static_cast<std::size_t>(group)].push_back(
+        {count, 1, geometry.first_index(geometry.number_of(instance.primitive)),
+         static_cast<std::int32_t>(first_vertices_[number]), static_cast<std::uint32_t>(number)});
     triangles_ += count / 3;
     has_textures_ = has_textures_ || !instance.primitive->colors.empty();
   }

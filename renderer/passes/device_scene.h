@@ -3,13 +3,16 @@
 
 #include <list>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/variants.h"
+#include "renderer/passes/deformer.h"
 #include "renderer/passes/device_geometry.h"
 #include "renderer/passes/scene_textures.h"
 #include "renderer/scene/pose.h"
+#include "renderer/tracing/tracer.h"
 
 namespace lightwell {
 
@@ -24,7 +27,7 @@ enum class DrawGroup { kCulled, kCulledMirrored, kDoubleSided };
 class DeviceScene {
  public:
   /// `buffers`: host-visible where code on the processor asks for host_hit_data().
-  explicit DeviceScene(gl::BufferUse buffers = gl::BufferUse::kDevice);
+  explicit DeviceScene(gl::ShaderLibrary& shaders, gl::BufferUse buffers = gl::BufferUse::kDevice);
   ~DeviceScene();
 
   /// Uploads what changed since the last frame; scenes used lately are kept, so that sessions can alternate.
@@ -67,6 +70,8 @@ class DeviceScene {
     const DeviceMaterial* materials;
   };
   HostHitData host_hit_data() const;
+  /// Valid until the next frame is prepared.
+  DevicePositions positions() const { return {&geometries_.front()->positions(), first_vertices_}; }
   const Environment& environment() const { return environment_; }
 
   /// What the motion variant of g_buffer.vert is fed with as well: a DeviceInstanceBefore for each instance.
@@ -89,7 +94,9 @@ class DeviceScene {
   };
   void use_geometry(const Pose& pose);
   void use_textures(const Scene& scene);
+  std::vector<DeformTask> place_instances(const Pose& pose);
   void upload_instances(const Scene& scene, const Pose& pose);
+  void deform(const std::vector<DeformTask>& tasks);
   void upload_materials(const Scene& scene);
   void set_defines(const Scene& scene, const Pose& pose, bool multiple_scattering);
   void attach_buffers();
@@ -105,6 +112,9 @@ class DeviceScene {
   bool has_textures_ = false, has_all_textures_ = false, has_coverage_ = false, has_lobes_ = false, is_lambert_ = false;
   bool has_clear_ = false, has_clear_walls_ = false, has_clear_volumes_ = false, has_mirrors_ = false,
        has_blend_ = false, has_smooth_ = false;
+  std::vector<std::uint32_t> first_vertices_, first_triangles_;  // of each instance
+  gl::ShaderLibrary& shaders_;
+  std::optional<Deformer> deformer_;  // made for the first scene that deforms
   gl::Defines texture_defines_, light_defines_, brdf_defines_, lobe_defines_, environment_defines_, smooth_defines_;
   std::uint64_t triangles_ = 0;
   gl::BufferUse buffers_;

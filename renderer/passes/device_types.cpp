@@ -76,11 +76,9 @@ void pack_lobes(const Material& material, const SceneTextures& textures, DeviceM
 
 }  // namespace
 
-std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed) {
-  const std::vector<glm::vec3>& normals =
-      deformed && !deformed->normals.empty() ? deformed->normals : primitive.normals;
-  const std::vector<glm::vec4>& tangents =
-      deformed && !deformed->tangents.empty() ? deformed->tangents : primitive.tangents;
+std::vector<DeviceVertex> pack_vertices(const Primitive& primitive) {
+  const std::vector<glm::vec3>& normals = primitive.normals;
+  const std::vector<glm::vec4>& tangents = primitive.tangents;
   std::vector<DeviceVertex> packed(primitive.positions.size());
   for (std::size_t i = 0; i < packed.size(); ++i) {
     DeviceVertex& vertex = packed[i];
@@ -95,10 +93,9 @@ std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const Deform
   return packed;
 }
 
-std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive, const DeformedVertices* deformed) {
-  const std::vector<glm::vec3>& positions = deformed ? deformed->positions : primitive.positions;
-  const std::vector<glm::vec3>& normals =
-      deformed && !deformed->normals.empty() ? deformed->normals : primitive.normals;
+std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive) {
+  const std::vector<glm::vec3>& positions = primitive.positions;
+  const std::vector<glm::vec3>& normals = primitive.normals;
   std::vector<DeviceTriangle> packed(primitive.indices.size() / 3);
   for (std::size_t t = 0; t < packed.size(); ++t) {
     DeviceTriangle& triangle = packed[t];

@@ -95,9 +95,8 @@ struct DeviceMaterial {
 };
 static_assert(sizeof(DeviceMaterial) == 512);
 
-/// `deformed` replaces positions, normals and tangents where it is not null.
-std::vector<DeviceVertex> pack_vertices(const Primitive& primitive, const DeformedVertices* deformed);
-std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive, const DeformedVertices* deformed);
+std::vector<DeviceVertex> pack_vertices(const Primitive& primitive);
+std::vector<DeviceTriangle> pack_triangles(const Primitive& primitive);
 DeviceInstance pack_instance(const glm::mat4& world_from_object, std::uint32_t first_vertex,
                              std::uint32_t first_triangle, std::uint32_t material);
 DeviceInstanceBefore pack_instance_before(const glm::mat4& world_from_object);

@@ -86,7 +86,7 @@ double EmissiveTextures::mean_luminance(const Scene& scene, const TextureUse& us
 std::vector<Emitter> emitters_of(const Scene& scene, const Instance& instance, EmissiveTextures& textures) {
   const Material& material = scene.materials[static_cast<std::size_t>(instance.material)];
   const Primitive& primitive = *instance.primitive;
-  const auto& positions = instance.deformed ? instance.deformed->positions : primitive.positions;
+  const std::span<const glm::vec3> positions = positions_of(instance);
   const auto& uvs = material.emissive_texture.uv_set == 0 ? primitive.uv0 : primitive.uv1;
   const Texture* texture = texture_of(scene, material.emissive_texture);
   const double texture_mean = textures.mean_luminance(scene, material.emissive_texture);

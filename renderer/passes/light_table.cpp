@@ -97,7 +97,7 @@ void fill(gl::Buffer& buffer, const gl::BufferTexture& texels, const std::vector
 }  // namespace
 
 bool LightTable::EmitterKey::operator==(const EmitterKey& other) const {
-  return primitive == other.primitive && deformed == other.deformed && image == other.image &&
+  return primitive == other.primitive && same_shape(deformed, other.deformed) && image == other.image &&
          world_from_object == other.world_from_object && radiance == other.radiance && instance == other.instance &&
          texture.texture == other.texture.texture && texture.uv_set == other.texture.uv_set &&
          texture.offset == other.texture.offset && texture.rotation == other.texture.rotation &&

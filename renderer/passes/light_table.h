@@ -58,7 +58,7 @@ class LightTable {
  private:
   struct EmitterKey {  // what an instance's emitters depend on
     const Primitive* primitive;
-    std::shared_ptr<const DeformedVertices> deformed;
+    std::shared_ptr<const DeformedShape> deformed;
     glm::mat4 world_from_object;
     glm::vec3 radiance;
     TextureUse texture;

@@ -12,7 +12,7 @@ constexpr float kSmooth = 0.5f;  // roughness up to which reflections are images
 
 PhotonTarget target_on(const Instance& instance, std::size_t triangle, glm::vec2 u) {
   const Primitive& primitive = *instance.primitive;
-  const std::vector<glm::vec3>& positions = instance.deformed ? instance.deformed->positions : primitive.positions;
+  const std::span<const glm::vec3> positions = positions_of(instance);
   std::array<glm::vec3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k)
     corners[k] =

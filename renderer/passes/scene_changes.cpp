@@ -67,6 +67,11 @@ float change_of(const std::vector<Material>& before, const std::vector<Material>
 
 }  // namespace
 
+bool SceneChanges::Placed::operator==(const Placed& other) const {
+  return primitive == other.primitive && world_from_object == other.world_from_object &&
+         same_shape(deformed, other.deformed) && material == other.material;
+}
+
 SceneChange SceneChanges::look_at(const Scene& scene, const Pose& pose) {
   State now{{}, pose.lights, scene.materials, scene.environment};
   now.instances.reserve(pose.instances.size());

@@ -29,9 +29,9 @@ class SceneChanges {
   struct Placed {
     std::shared_ptr<const Primitive> primitive;
     glm::mat4 world_from_object;
-    std::shared_ptr<const DeformedVertices> deformed;
+    std::shared_ptr<const DeformedShape> deformed;
     int material;
-    bool operator==(const Placed&) const = default;
+    bool operator==(const Placed& other) const;
   };
 
   /// What is different from the scene of the last call.

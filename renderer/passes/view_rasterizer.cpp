@@ -13,9 +13,6 @@ namespace {
 constexpr int kRowsAtOnce = 8, kPixelsAtOnce = 32;
 constexpr int kManyPixels = 4096;  // of what surrounds a triangle: more are drawn by several threads
 
-const glm::vec3* positions_of(const Instance& instance) {
-  return (instance.deformed ? instance.deformed->positions : instance.primitive->positions).data();
-}
 std::uint32_t triangles_of(const Instance& instance) {
   return static_cast<std::uint32_t>(instance.primitive->indices.size() / 3);
 }
@@ -24,7 +21,7 @@ std::uint32_t triangles_of(const Instance& instance) {
 // anywhere.
 void find_barycentrics(const ViewRays& rays, glm::ivec2 pixel, const Instance& instance, const std::uint32_t* indices,
                        Hit& hit) {
-  const glm::vec3* positions = positions_of(instance);
+  const std::span<const glm::vec3> positions = positions_of(instance);
   const auto corner_ws = [&](int i) {
     return glm::vec3(instance.world_from_object * glm::vec4(positions[indices[i]], 1.0f));
   };
@@ -168,7 +165,7 @@ void ViewRasterizer::draw(const View& view) {
 void ViewRasterizer::draw_chunk(const View& view, const Chunk& chunk) {
   const Instance& instance = scene_.instances[chunk.instance];
   lanes::ViewTriangles triangles;
-  triangles.positions = &positions_of(instance)->x;
+  triangles.positions = &positions_of(instance).front().x;
   triangles.indices = &instance.primitive->indices[std::size_t{3} * chunk.first];
   triangles.count = chunk.count;
   triangles.first_number = first_numbers_[chunk.instance] + chunk.first;
@@ -243,7 +240,7 @@ void ViewRasterizer::find_hits(const View& view, glm::ivec2 first, int count, Hi
         body(i, hit, indices[static_cast<std::size_t>(i)]);
   };
   for_hits([&](int, const Hit& hit, const std::uint32_t* corners) {
-    const glm::vec3* positions = positions_of(scene_.instances[hit.instance]);
+    const std::span<const glm::vec3> positions = positions_of(scene_.instances[hit.instance]);
     for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&positions[corners[corner]]);
   });
   for_hits([&](int i, Hit& hit, const std::uint32_t* corners) {

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 
 #include "renderer/scene/animation.h"
-#include "renderer/scene/deform.h"
 
 namespace lightwell {
 namespace {
@@ -116,31 +114,6 @@ glm::mat4 without_scale(const glm::mat4& matrix) {
                    glm::vec4(glm::vec3(matrix[3]), 1.0f));
 }
 
-struct Bounds {
-  glm::vec3 min{std::numeric_limits<float>::max()}, max{-std::numeric_limits<float>::max()};
-
-  void add(const glm::vec3& point) {
-    min = glm::min(min, point);
-    max = glm::max(max, point);
-  }
-  /// The box around the box `low`..`high` after an affine transform.
-  void add_box(const glm::mat4& world_from_box, const glm::vec3& low, const glm::vec3& high) {
-    const glm::vec3 center = glm::vec3(world_from_box * glm::vec4(0.5f * (low + high), 1.0f));
-    const glm::vec3 half = 0.5f * (high - low);
-    const glm::vec3 reach = glm::abs(glm::vec3(world_from_box[0])) * half.x +
-                            glm::abs(glm::vec3(world_from_box[1])) * half.y +
-                            glm::abs(glm::vec3(world_from_box[2])) * half.z;
-    add(center - reach);
-    add(center + reach);
-  }
-};
-
-Bounds bounds_of(const std::vector<glm::vec3>& points) {
-  Bounds bounds;
-  for (const glm::vec3& point : points) bounds.add(point);
-  return bounds;
-}
-
 /// Places meshes, lights and cameras of nodes one after another.
 class PoseBuilder {
  public:
@@ -152,7 +125,7 @@ class PoseBuilder {
     if (node.mesh == kNone) return;
     const std::shared_ptr<const Mesh>& mesh = scene_.meshes[index(node.mesh)];
     const std::span<const float> weights = morph_weights(n, *mesh);
-    joint_matrices_.clear();  // made by the first primitive that needs them
+    joint_matrices_ = nullptr;  // made by the first primitive that needs them
     for (std::size_t i = 0; i < mesh->primitives.size(); ++i) add_primitive(n, mesh, i, weights);
   }
 
@@ -171,7 +144,7 @@ class PoseBuilder {
   }
 
   Pose finish() && {
-    if (bounds_.min.x <= bounds_.max.x) {
+    if (!bounds_.is_empty()) {
       pose_.bounds_min = bounds_.min;
       pose_.bounds_max = bounds_.max;
     }
@@ -185,15 +158,14 @@ class PoseBuilder {
     return own.empty() ? mesh.weights : own;
   }
 
-  std::span<const glm::mat4> joint_matrices(const Skin& skin) {
-    if (joint_matrices_.empty()) {
-      joint_matrices_.reserve(skin.joints.size());
-      for (std::size_t j = 0; j < skin.joints.size(); ++j)
-        joint_matrices_.push_back(j < skin.joint_from_mesh.size()
-                                      ? world_[index(skin.joints[j])] * skin.joint_from_mesh[j]
-                                      : world_[index(skin.joints[j])]);
-    }
-    return joint_matrices_;
+  const DeformedShape::JointMatrices& joint_matrices(const Skin& skin) {
+    if (joint_matrices_) return joint_matrices_;
+    std::vector<glm::mat4> matrices;
+    matrices.reserve(skin.joints.size());
+    for (std::size_t j = 0; j < skin.joints.size(); ++j)
+      matrices.push_back(j < skin.joint_from_mesh.size() ? world_[index(skin.joints[j])] * skin.joint_from_mesh[j]
+                                                         : world_[index(skin.joints[j])]);
+    return joint_matrices_ = std::make_shared<const std::vector<glm::mat4>>(std::move(matrices));
   }
 
   void add_primitive(int n, const std::shared_ptr<const Mesh>& mesh, std::size_t i, std::span<const float> weights) {
@@ -203,14 +175,12 @@ class PoseBuilder {
     const bool skinned = skin_index != kNone && !primitive.joints.empty() && !primitive.weights.empty() &&
                          !scene_.skins[index(skin_index)].joints.empty();
     if (skinned || !primitive.morph_targets.empty()) {
-      auto deformed = std::make_shared<DeformedVertices>(morph(primitive, weights));
-      if (skinned) {
-        skin(primitive, joint_matrices(scene_.skins[index(skin_index)]), *deformed);
-        instance.world_from_object = glm::mat4(1.0f);
-      }
-      const Bounds bounds = bounds_of(deformed->positions);
-      if (!deformed->positions.empty()) bounds_.add_box(instance.world_from_object, bounds.min, bounds.max);
-      instance.deformed = std::move(deformed);
+      if (skinned) instance.world_from_object = glm::mat4(1.0f);
+      instance.deformed = std::make_shared<DeformedShape>(
+          instance.primitive, skinned ? joint_matrices(scene_.skins[index(skin_index)]) : nullptr,
+          std::vector<float>(weights.begin(), weights.end()));
+      const Bounds& bounds = instance.deformed->bounds();
+      if (!bounds.is_empty()) bounds_.add_box(instance.world_from_object, bounds.min, bounds.max);
     } else if (!primitive.positions.empty()) {
       bounds_.add_box(instance.world_from_object, primitive.bounds_min, primitive.bounds_max);
     }
@@ -220,7 +190,7 @@ class PoseBuilder {
   const Scene& scene_;
   const AnimatedState& state_;
   const std::vector<glm::mat4>& world_;
-  std::vector<glm::mat4> joint_matrices_;
+  DeformedShape::JointMatrices joint_matrices_;
   Bounds bounds_;
   Pose pose_;
 };

@@ -1,17 +1,11 @@
-// A scene at one moment: animations applied, hierarchy multiplied out, skins and morph targets deformed.
+// A scene at one moment: animations applied, hierarchy multiplied out, joints' matrices and morph weights found.
 // What the renderer draws and traces is a Pose; it never looks at nodes.
 #pragma once
 
+#include "renderer/scene/deformed_shape.h"
 #include "renderer/scene/scene.h"
 
 namespace lightwell {
-
-/// Vertices of a skinned or morphed primitive. World space if skinned, else the node's.
-struct DeformedVertices {
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;
-  std::vector<glm::vec4> tangents;
-};
 
 /// One primitive placed in the world.
 struct Instance {
@@ -20,8 +14,13 @@ struct Instance {
   int material = -1;
   int node = -1;
   int primitive_index = 0;  // within its mesh; (node, primitive_index) names the instance over time
-  std::shared_ptr<const DeformedVertices> deformed;  // null: rigid
+  std::shared_ptr<const DeformedShape> deformed;  // null: rigid
 };
+
+/// An instance's vertices in its own space, on the processor.
+inline std::span<const glm::vec3> positions_of(const Instance& instance) {
+  return instance.deformed ? instance.deformed->positions() : std::span<const glm::vec3>(instance.primitive->positions);
+}
 
 struct PlacedLight {
   Light light;  // animated values
@@ -41,7 +40,8 @@ struct Pose {
   std::vector<Instance> instances;
   std::vector<PlacedLight> lights;
   std::vector<PlacedCamera> cameras;             // in the order of their nodes
-  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of all instances, world space; equal when there are none
+  // Of all instances, world space; equal when there are none. Skins and morph targets may stay well within.
+  glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
 };
 
 /// The scene at `time_s` seconds (animations repeat; a negative time counts as 0).

@@ -103,6 +103,13 @@ struct MorphTarget {
   std::vector<glm::vec3> positions;  // displacements; empty or one per vertex
   std::vector<glm::vec3> normals;
   std::vector<glm::vec3> tangents;
+  glm::vec3 displacement_min{0.0f}, displacement_max{0.0f};  // of `positions`; fill_bounds() knows them
+};
+
+/// The box around the vertices of a primitive that a joint moves, where they are before it does.
+struct JointBounds {
+  std::uint32_t joint = 0;  // in Skin::joints
+  glm::vec3 min{0.0f}, max{0.0f};
 };
 
 /// Indexed triangles of one material. Every per-vertex array is empty or has one element per position,
@@ -120,6 +127,7 @@ struct Primitive {
   std::vector<MorphTarget> morph_targets;
   int material = -1;                             // -1: the default material of glTF
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};  // of `positions`
+  std::vector<JointBounds> joint_bounds;         // of the joints that move any vertex
 };
 
 struct Mesh {

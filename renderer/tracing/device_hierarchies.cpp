@@ -131,7 +131,7 @@ const DeviceHierarchies::BottomLevel& DeviceHierarchies::bottom_level(const Geom
     return *bottom_levels_.emplace(group.key, std::move(built)).first->second;
   }
   BottomLevel& level = *known->second;
-  if (group.deformed != level.shape) refit(level, group);
+  if (!same_shape(group.deformed, level.shape)) refit(level, group);
   level.last_used = frame_;
   return level;
 }

@@ -68,7 +68,7 @@ class DeviceHierarchies {
  private:
   struct BottomLevel {
     std::vector<std::shared_ptr<const Primitive>> primitives;  // keep the key's addresses alive
-    std::shared_ptr<const DeformedVertices> shape;
+    std::shared_ptr<const DeformedShape> shape;
     PoolRange nodes, triangles, places;
     std::uint32_t root = 0;  // in the node buffer
     Box bounds;              // in the group's space

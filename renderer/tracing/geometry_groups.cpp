@@ -23,13 +23,11 @@ bool is_invertible(const glm::mat4& m) {
   return is_finite(glm::inverse(m));
 }
 
-std::shared_ptr<const DeformedVertices> in_world_space(const Instance& instance) {
-  const auto& positions = instance.deformed ? instance.deformed->positions : instance.primitive->positions;
-  auto placed = std::make_shared<DeformedVertices>();
-  placed->positions.reserve(positions.size());
-  for (const glm::vec3& p : positions)
-    placed->positions.push_back(glm::vec3(instance.world_from_object * glm::vec4(p, 1.0f)));
-  return placed;
+std::shared_ptr<const DeformedShape> in_world_space(const Instance& instance) {
+  std::vector<glm::vec3> placed;
+  for (const glm::vec3& p : positions_of(instance))
+    placed.push_back(glm::vec3(instance.world_from_object * glm::vec4(p, 1.0f)));
+  return std::make_shared<DeformedShape>(std::move(placed));
 }
 
 GeometryGroup group_of(const Instance& instance, std::uint32_t index, bool filtered) {
@@ -44,7 +42,7 @@ GeometryGroup group_of(const Instance& instance, std::uint32_t index, bool filte
     group.deformed = in_world_space(instance);
   }
   if (group.deformed) {
-    LIGHTWELL_CHECK_OP(group.deformed->positions.size(), ==, instance.primitive->positions.size());
+    LIGHTWELL_CHECK_OP(group.deformed->vertex_count(), ==, instance.primitive->positions.size());
     group.key.node = instance.node;
     group.key.primitive_index = instance.primitive_index;
   }

@@ -25,8 +25,8 @@ struct GeometryKey {
 struct GeometryGroup {
   GeometryKey key;
   std::uint32_t first_instance = 0;
-  glm::mat4 world_from_object{1.0f};                 // finite and invertible
-  std::shared_ptr<const DeformedVertices> deformed;  // not null: a group of one; another address is another shape
+  glm::mat4 world_from_object{1.0f};              // finite and invertible
+  std::shared_ptr<const DeformedShape> deformed;  // not null: a group of one
 };
 
 /// All triangles of a group in its own space, primitive by primitive: body(primitive of the group, triangle, corners).
@@ -34,7 +34,8 @@ template <class Body>
 void for_triangles(const GeometryGroup& group, const Body& body) {
   for (std::uint32_t p = 0; p < group.key.primitives.size(); ++p) {
     const Primitive& primitive = *group.key.primitives[p];
-    const auto& positions = group.deformed ? group.deformed->positions : primitive.positions;
+    const std::span<const glm::vec3> positions =
+        group.deformed ? group.deformed->positions() : std::span<const glm::vec3>(primitive.positions);
     for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
       const std::uint32_t* corners = &primitive.indices[std::size_t{3} * t];
       body(p, t, std::array<glm::vec3, 3>{positions[corners[0]], positions[corners[1]], positions[corners[2]]});

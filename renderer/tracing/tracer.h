@@ -93,10 +93,17 @@ struct Coverage {
   bool double_sided = false;  // a camera sees its back as well; rays meet both sides of everything
 };
 
+/// Where the device has the instances' vertices.
+struct DevicePositions {
+  const gl::Buffer* buffer = nullptr;    // vec3, tightly packed; null: it has none
+  std::span<const std::uint32_t> first;  // of each instance
+};
+
 /// What a tracer needs to know of the world in one frame.
 struct TraceScene {
   std::span<const Instance> instances;
   std::span<const Coverage> coverage;  // one per instance
+  DevicePositions device_positions{};  // a tracer on the device fits its hierarchies to those of deformed instances
 };
 
 class HostTracer;

@@ -44,7 +44,7 @@ void TriangleGroups::update(const TraceScene& scene, std::uint32_t count) {
   for (std::uint32_t group = 0; group < count; ++group) {
     std::vector<Instance> instances(scene.instances.begin(), scene.instances.end());
     for (Instance& instance : instances) instance.primitive = parts_of(*current_, instance.primitive).parts[group];
-    current_->tracers[group]->update({instances, scene.coverage});
+    current_->tracers[group]->update({instances, scene.coverage, scene.device_positions});
   }
   drop_unused();
 }

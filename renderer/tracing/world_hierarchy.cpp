@@ -114,7 +114,7 @@ void WorldHierarchy::lay_out(std::vector<GeometryGroup> groups, std::span<const 
 
 // False where it is already.
 bool WorldHierarchy::place(const GeometryGroup& group, Placed& placed) {
-  if (placed.world_from_object == group.world_from_object && placed.shape == group.deformed) return false;
+  if (placed.world_from_object == group.world_from_object && same_shape(placed.shape, group.deformed)) return false;
   placed.world_from_object = group.world_from_object;
   placed.shape = group.deformed;
   place_triangles(group, placed);

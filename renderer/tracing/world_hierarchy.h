@@ -34,7 +34,7 @@ class WorldHierarchy {
     std::shared_ptr<const Topology> topology;
     std::uint32_t first_leaf;
     glm::mat4 world_from_object{0.0f};
-    std::shared_ptr<const DeformedVertices> shape;
+    std::shared_ptr<const DeformedShape> shape;
     float area_m2 = 0.0f, built_area_m2 = 0.0f;  // of all leaves' boxes; when it was laid out
   };
 

@@ -25,14 +25,6 @@ glm::vec3 on_sphere(std::mt19937& random) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-void set_bounds(Primitive& primitive) {
-  primitive.bounds_min = primitive.bounds_max = primitive.positions.front();
-  for (const glm::vec3& p : primitive.positions) {
-    primitive.bounds_min = glm::min(primitive.bounds_min, p);
-    primitive.bounds_max = glm::max(primitive.bounds_max, p);
-  }
-}
-
 // A grid of side x side cells, the vertex of (s, t) in [0, 1]^2 placed by `place`.
 template <class Place>
 std::shared_ptr<Primitive> grid(std::uint32_t side, Place place) {
@@ -48,7 +40,7 @@ std::shared_ptr<Primitive> grid(std::uint32_t side, Place place) {
       const std::uint32_t a = y * (side + 1) + x, b = a + 1, c = a + side + 1, d = c + 1;
       primitive->indices.insert(primitive->indices.end(), {a, b, c, b, d, c});
     }
-  set_bounds(*primitive);
+  fill_bounds(*primitive);
   return primitive;
 }
 
@@ -74,7 +66,7 @@ std::shared_ptr<Primitive> random_triangles(std::uint32_t count, float size, std
       primitive->indices.push_back(i + k);
     }
   }
-  set_bounds(*primitive);
+  fill_bounds(*primitive);
   return primitive;
 }
 
@@ -147,7 +139,7 @@ BruteHit brute_force(const TraceWorld& world, const Ray& ray) {
   for (std::uint32_t i = 0; i < world.instances.size(); ++i) {
     const Instance& instance = world.instances[i];
     const Primitive& primitive = *instance.primitive;
-    const auto& positions = instance.deformed ? instance.deformed->positions : primitive.positions;
+    const std::span<const glm::vec3> positions = positions_of(instance);
     const glm::dmat4 world_from_object(instance.world_from_object);
     for (std::uint32_t triangle = 0; triangle < primitive.indices.size() / 3; ++triangle) {
       const auto corner = [&](std::uint32_t k) {
@@ -179,12 +171,12 @@ BruteHit brute_force(const TraceWorld& world, const Ray& ray) {
 PlaneDistance plane_distance(const TraceWorld& world, const Ray& ray, const Hit& hit) {
   const Instance& instance = world.instances.at(hit.instance);
   const Primitive& primitive = *instance.primitive;
-  const auto& positions = instance.deformed ? instance.deformed->positions : primitive.positions;
+  const std::span<const glm::vec3> positions = positions_of(instance);
   const glm::dmat4 world_from_object(instance.world_from_object);
   const glm::dvec3 origin(ray.origin_ws), direction(ray.direction_ws);
   glm::dvec3 largest = glm::abs(origin), corners[3];
   for (std::uint32_t k = 0; k < 3; ++k) {
-    const glm::dvec3 p(positions.at(primitive.indices.at(3 * hit.triangle + k)));
+    const glm::dvec3 p(positions[primitive.indices.at(3 * hit.triangle + k)]);
     corners[k] = glm::dvec3(world_from_object * glm::dvec4(p, 1.0));
     largest = glm::max(largest, glm::max(glm::abs(p), glm::abs(corners[k])));
   }

@@ -133,13 +133,13 @@ TEST_F(TracerTest, FollowsDeformedGeometry) {
     TraceWorld world;
     world.name = "deformed, frame " + std::to_string(frame);
     world.add(rest);
-    auto deformed = std::make_shared<DeformedVertices>();
+    std::vector<glm::vec3> positions;
     for (glm::vec3 p : rest->positions) {
       p.y += 0.8f * static_cast<float>(frame) * std::sin(p.x + 0.7f * static_cast<float>(frame));
       if (frame == 4) p *= 3.0f;  // far from where it was built
-      deformed->positions.push_back(p);
+      positions.push_back(p);
     }
-    world.instances[0].deformed = deformed;
+    world.instances[0].deformed = std::make_shared<DeformedShape>(std::move(positions));
     world.add(rest, glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, -9.0f, 0.0f)));
     const std::vector<Ray> rays = random_rays(world, 300, 6);
     std::vector<Hit> expected;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #ifdef LIGHTWELL_WITH_EMBREE
+#include "renderer/scene/bounds.h"
 #include "renderer/tracing/embree/embree_tracer.h"
 #endif
 #include "renderer/tracing/tracer.h"
@@ -46,11 +47,7 @@ int SceneMaker::material(const Material& material) {
 
 void SceneMaker::add(Primitive primitive, int material) {
   primitive.material = material;
-  primitive.bounds_min = primitive.bounds_max = primitive.positions.front();
-  for (const glm::vec3& p : primitive.positions) {
-    primitive.bounds_min = glm::min(primitive.bounds_min, p);
-    primitive.bounds_max = glm::max(primitive.bounds_max, p);
-  }
+  fill_bounds(primitive);
   auto mesh = std::make_shared<Mesh>();
   mesh->primitives.push_back(std::move(primitive));
   Node node;

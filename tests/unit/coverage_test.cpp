@@ -147,7 +147,7 @@ TEST(GeometryGroups, AFlattenedObjectIsPlacedInTheWorld) {
   ASSERT_EQ(groups.size(), 2u);
   ASSERT_TRUE(groups[0].deformed);
   EXPECT_EQ(groups[0].world_from_object, glm::mat4(1.0f));
-  EXPECT_EQ(groups[0].deformed->positions[1], glm::vec3(2.0f, 0.0f, 0.0f));
+  EXPECT_EQ(groups[0].deformed->positions()[1], glm::vec3(2.0f, 0.0f, 0.0f));
   EXPECT_FALSE(groups[1].deformed);
 }
 

@@ -64,6 +64,7 @@ Node& node_of(Scene& scene, int index) {
 /// A scene of one node that shows `primitive`.
 Scene scene_of(Primitive primitive) {
   Scene scene;
+  fill_bounds(primitive);
   auto mesh = std::make_shared<Mesh>();
   mesh->primitives.push_back(std::move(primitive));
   scene.meshes.push_back(std::move(mesh));
@@ -205,7 +206,7 @@ TEST(Pose, SkinBlendsJointsInWorldSpace) {
   const Pose pose = pose_at(scene, 0);
   ASSERT_TRUE(pose.instances[0].deformed);
   EXPECT_EQ(pose.instances[0].world_from_object, glm::mat4(1.0f));
-  const DeformedVertices& vertices = *pose.instances[0].deformed;
+  const DeformedVertices vertices = pose.instances[0].deformed->vertices();
   // Both joints' matrices take mesh space through joint space (x - 10) and back to the world (+ 10), the second one
   // turning a quarter about +Y in between: (x, y, z) -> (z + 10, y, 10 - x).
   expect_near(vertices.positions[0], {0, 0, 0});
@@ -228,13 +229,13 @@ TEST(Pose, SkinnedNormalsStayPerpendicularUnderUnevenScale) {
   scene.skins.push_back({"", {joint}, {glm::mat4(1)}});
   node_of(scene, 0).skin = 0;
   const Pose stretched = pose_at(scene, 0);
-  const DeformedVertices& vertices = *stretched.instances[0].deformed;
+  const DeformedVertices vertices = stretched.instances[0].deformed->vertices();
   expect_near(vertices.normals[0], glm::normalize(glm::vec3(1, 4, 0)));
   EXPECT_NEAR(glm::dot(vertices.normals[0], vertices.positions[1] - vertices.positions[0]), 0.0f, kTolerance);
   node_of(scene, joint).local.scale = {-1, 1, 1};  // a mirror: still on the outside, handedness turned over
   const Pose mirrored = pose_at(scene, 0);
-  expect_near(mirrored.instances[0].deformed->normals[0], glm::normalize(glm::vec3(-1, 1, 0)));
-  EXPECT_EQ(mirrored.instances[0].deformed->tangents[0].w, -1.0f);
+  expect_near(mirrored.instances[0].deformed->vertices().normals[0], glm::normalize(glm::vec3(-1, 1, 0)));
+  EXPECT_EQ(mirrored.instances[0].deformed->vertices().tangents[0].w, -1.0f);
 }
 
 TEST(Pose, MorphWeightsComeFromAnimationNodeOrMesh) {
@@ -248,18 +249,18 @@ TEST(Pose, MorphWeightsComeFromAnimationNodeOrMesh) {
   auto mesh = std::make_shared<Mesh>(*scene.meshes[0]);
   mesh->weights = {0.5f, 0.0f};
   scene.meshes[0] = mesh;
-  expect_near(pose_at(scene, 0).instances[0].deformed->positions[0], {0, 0, 1});
+  expect_near(pose_at(scene, 0).instances[0].deformed->vertices().positions[0], {0, 0, 1});
 
   node_of(scene, 0).weights = {0.0f, 1.0f};
   node_of(scene, 0).local = moved({0, 3, 0});
   const Pose pose = pose_at(scene, 0);
-  expect_near(pose.instances[0].deformed->positions[1], {2, 0, 0});  // in the node's space
-  expect_near(pose.instances[0].deformed->normals[0], glm::normalize(glm::vec3(1, 0, 1)));
+  expect_near(pose.instances[0].deformed->vertices().positions[1], {2, 0, 0});  // in the node's space
+  expect_near(pose.instances[0].deformed->vertices().normals[0], glm::normalize(glm::vec3(1, 0, 1)));
   expect_near(pose.bounds_min, {1, 3, 0});
 
   scene.animations.push_back(
       {"", {{0, AnimatedProperty::kWeights, Interpolation::kLinear, {0, 1}, {0, 0, 1, 1}, 2}}, {}, 1.0f});
-  expect_near(pose_at(scene, 0.25).instances[0].deformed->positions[0], {0.25f, 0, 0.5f});
+  expect_near(pose_at(scene, 0.25).instances[0].deformed->vertices().positions[0], {0.25f, 0, 0.5f});
 }
 
 TEST(Pose, LightsShineAlongMinusZAndAnimateAsCopies) {

@@ -210,10 +210,10 @@ TEST(WorldHierarchy, FollowsWhatDeforms) {
   WorldHierarchy world;
   const auto primitive = random_triangles(200, 0.3f, 8);
   for (const float scale : {1.0f, 1.5f, 3.0f, 9.0f, 0.2f}) {
-    auto shape = std::make_shared<DeformedVertices>();
-    for (const glm::vec3& position : primitive->positions) shape->positions.push_back(scale * position);
+    std::vector<glm::vec3> positions;
+    for (const glm::vec3& position : primitive->positions) positions.push_back(scale * position);
     std::vector<Instance> instances{instance_of(primitive, glm::mat4(1.0f), 0)};
-    instances[0].deformed = shape;
+    instances[0].deformed = std::make_shared<DeformedShape>(std::move(positions));
     const WideHierarchy* const hierarchy = updated(world, instances);
     ASSERT_NE(hierarchy, nullptr);
     const std::vector<Instance> rigid{instance_of(primitive, glm::scale(glm::mat4(1.0f), glm::vec3(scale)), 0)};

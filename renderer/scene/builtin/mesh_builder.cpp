@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "renderer/scene/bounds.h"
 #include "renderer/scene/tangents.h"
 
 namespace lightwell::builtin {
@@ -163,13 +164,7 @@ Primitive MeshBuilder::finish(int material) const {
     primitive.normals.push_back(normals[source]);
     primitive.uv0.push_back(uvs[source]);
   }
-  if (!positions.empty()) {
-    primitive.bounds_min = primitive.bounds_max = positions.front();
-    for (const glm::vec3& p : positions) {
-      primitive.bounds_min = glm::min(primitive.bounds_min, p);
-      primitive.bounds_max = glm::max(primitive.bounds_max, p);
-    }
-  }
+  fill_bounds(primitive);
   return primitive;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "renderer/scene/bounds.h"
 #include "renderer/scene/gltf/accessors.h"
 #include "renderer/scene/gltf/numbers.h"
 #include "renderer/scene/gltf/shading_frames.h"
@@ -15,14 +16,6 @@ namespace {
 const Material& material_of(const Scene& scene, int index, const std::string& where) {
   static const Material kDefault;
   return index == kNone ? kDefault : at(scene.materials, index, join(where, "material"));
-}
-
-void fill_bounds(Primitive& primitive) {
-  primitive.bounds_min = primitive.bounds_max = primitive.positions.front();
-  for (const glm::vec3& position : primitive.positions) {
-    primitive.bounds_min = glm::min(primitive.bounds_min, position);
-    primitive.bounds_max = glm::max(primitive.bounds_max, position);
-  }
 }
 
 /// Nothing if the primitive shows nothing.

@@ -36,14 +36,12 @@ void reject_uncovered(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-const std::vector<glm::vec3>& positions_of(const Primitive& primitive, const DeformedVertices* deformed) {
-  return deformed ? deformed->positions : primitive.positions;
-}
-
-EmbreeGeometry make_triangles(RTCDevice device, const Primitive& primitive, const DeformedVertices* deformed,
+// `deformed`: null if it is rigid.
+EmbreeGeometry make_triangles(RTCDevice device, const Primitive& primitive, const DeformedShape* deformed,
                               bool filtered) {
   EmbreeGeometry geometry{rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE)};
-  const auto& positions = positions_of(primitive, deformed);
+  const std::span<const glm::vec3> positions =
+      deformed ? deformed->positions() : std::span<const glm::vec3>(primitive.positions);
   // Embree's own vertex buffer: it reads beyond the last vertex, which a std::vector does not allow.
   void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(glm::vec3), positions.size());
@@ -103,8 +101,8 @@ void EmbreeScene::update(const TraceScene& scene) {
   prepare_coverage_tests(scene, filtered);
   placed_.clear();
   for (const Instance& instance : scene.instances)
-    placed_.push_back({positions_of(*instance.primitive, instance.deformed.get()).data(),
-                       instance.primitive->indices.data(), instance.world_from_object});
+    placed_.push_back(
+        {positions_of(instance).data(), instance.primitive->indices.data(), instance.world_from_object});
   const std::vector<GeometryGroup> groups = group_instances(scene.instances, filtered);
   std::vector<const BottomLevel*> levels;
   levels.reserve(groups.size());
@@ -138,7 +136,7 @@ EmbreeScene::BottomLevel& EmbreeScene::bottom_level(const GeometryGroup& group, 
     return *bottom_levels_.emplace(group.key, std::move(built)).first->second;
   }
   BottomLevel& level = *known->second;
-  if (group.deformed != level.shape) {
+  if (!same_shape(group.deformed, level.shape)) {
     refit(level, group);
     if (bounds_area_m2(level.scene.get()) > kRefitAreaLimit * level.built_area_m2) build(level, group, instances);
   }
@@ -166,7 +164,7 @@ void EmbreeScene::build(BottomLevel& level, const GeometryGroup& group, std::spa
 
 void EmbreeScene::refit(BottomLevel& level, const GeometryGroup& group) {
   const RTCGeometry geometry = rtcGetGeometry(level.scene.get(), 0);
-  const auto& positions = group.deformed->positions;
+  const std::span<const glm::vec3> positions = group.deformed->positions();
   void* vertices = rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
   std::memcpy(vertices, positions.data(), positions.size() * sizeof(glm::vec3));
   rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);

@@ -68,7 +68,7 @@ class EmbreeScene {
   struct BottomLevel {
     std::vector<std::shared_ptr<const Primitive>> primitives;  // keep the key's addresses and the indices alive
     EmbreeSceneHandle scene;
-    std::shared_ptr<const DeformedVertices> shape;
+    std::shared_ptr<const DeformedShape> shape;
     float built_area_m2 = 0.0f;  // of the bounds when the hierarchy was built
     std::uint64_t built_in = 0;  // frame of the last build or refit
     std::uint64_t last_used = 0;
