@@ -94,7 +94,7 @@ EmbreeScene::EmbreeScene(unsigned threads) {
   throw_on_error();
 }
 
-void EmbreeScene::update(const TraceScene& scene) {
+void EmbreeScene::update(const TraceScene& scene, ThreadPool& threads) {
   LIGHTWELL_CHECK_OP(scene.instances.size(), ==, scene.coverage.size());
   ++frame_;
   std::vector<bool> filtered;
@@ -104,9 +104,10 @@ void EmbreeScene::update(const TraceScene& scene) {
     placed_.push_back(
         {positions_of(instance).data(), instance.primitive->indices.data(), instance.world_from_object});
   const std::vector<GeometryGroup> groups = group_instances(scene.instances, filtered);
-  std::vector<const BottomLevel*> levels;
+  std::vector<BottomLevel*> levels;
   levels.reserve(groups.size());
   for (const GeometryGroup& group : groups) levels.push_back(&bottom_level(group, scene.instances));
+  refit_deformed(groups, levels, scene.instances, threads);
   rebuild_top_level(groups, levels);
   drop_unused();
   throw_on_error();
@@ -135,13 +136,8 @@ EmbreeScene::BottomLevel& EmbreeScene::bottom_level(const GeometryGroup& group, 
     built->last_used = frame_;
     return *bottom_levels_.emplace(group.key, std::move(built)).first->second;
   }
-  BottomLevel& level = *known->second;
-  if (!same_shape(group.deformed, level.shape)) {
-    refit(level, group);
-    if (bounds_area_m2(level.scene.get()) > kRefitAreaLimit * level.built_area_m2) build(level, group, instances);
-  }
-  level.last_used = frame_;
-  return level;
+  known->second->last_used = frame_;
+  return *known->second;
 }
 
 void EmbreeScene::build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances) {
@@ -162,7 +158,24 @@ void EmbreeScene::build(BottomLevel& level, const GeometryGroup& group, std::spa
   level.built_in = frame_;
 }
 
-void EmbreeScene::refit(BottomLevel& level, const GeometryGroup& group) {
+// Embree builds a small mesh with a single thread: several at once.
+void EmbreeScene::refit_deformed(const std::vector<GeometryGroup>& groups, const std::vector<BottomLevel*>& levels,
+                                 std::span<const Instance> instances, ThreadPool& threads) {
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (!same_shape(groups[i].deformed, levels[i]->shape)) changed.push_back(i);
+  std::vector<RTCError> errors(changed.size(), RTC_ERROR_NONE);
+  threads.parallel_for(static_cast<std::uint32_t>(changed.size()), 1, [&](std::uint32_t i, std::uint32_t) {
+    refit(*levels[changed[i]], groups[changed[i]]);
+    errors[i] = rtcGetDeviceError(device_.get());  // it keeps one for each thread
+  });
+  for (const RTCError error : errors) throw_on(error);
+  for (const std::size_t i : changed)
+    if (bounds_area_m2(levels[i]->scene.get()) > kRefitAreaLimit * levels[i]->built_area_m2)
+      build(*levels[i], groups[i], instances);
+}
+
+void EmbreeScene::refit(BottomLevel& level, const GeometryGroup& group) const {
   const RTCGeometry geometry = rtcGetGeometry(level.scene.get(), 0);
   const std::span<const glm::vec3> positions = group.deformed->positions();
   void* vertices = rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
@@ -175,7 +188,7 @@ void EmbreeScene::refit(BottomLevel& level, const GeometryGroup& group) {
 }
 
 void EmbreeScene::rebuild_top_level(const std::vector<GeometryGroup>& groups,
-                                    const std::vector<const BottomLevel*>& levels) {
+                                    const std::vector<BottomLevel*>& levels) {
   bool changed = slots_.size() != groups.size();
   for (std::size_t i = groups.size(); i < slots_.size(); ++i)
     rtcDetachGeometry(top_level_.get(), static_cast<unsigned>(i));
@@ -220,7 +233,10 @@ void EmbreeScene::drop_unused() {
 }
 
 void EmbreeScene::throw_on_error() const {
-  const RTCError error = rtcGetDeviceError(device_.get());
+  throw_on(rtcGetDeviceError(device_.get()));
+}
+
+void EmbreeScene::throw_on(RTCError error) {
   if (error == RTC_ERROR_NONE) return;
   throw std::runtime_error(error == RTC_ERROR_OUT_OF_MEMORY ? "Embree ran out of memory for its hierarchies"
                                                             : "Embree failed with error " + std::to_string(error));

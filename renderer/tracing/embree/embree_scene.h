@@ -11,6 +11,7 @@
 #include "renderer/tracing/coverage.h"
 #include "renderer/tracing/embree/embree_handles.h"
 #include "renderer/tracing/geometry_groups.h"
+#include "renderer/tracing/thread_pool.h"
 
 namespace lightwell {
 
@@ -19,8 +20,8 @@ class EmbreeScene {
   /// `threads` for building; 0: one per core. Throws std::runtime_error if Embree cannot start.
   explicit EmbreeScene(unsigned threads);
 
-  /// As Tracer::update. Throws std::runtime_error if memory runs out.
-  void update(const TraceScene& scene);
+  /// As Tracer::update, with `threads` for what deforms. Throws std::runtime_error if memory runs out.
+  void update(const TraceScene& scene, ThreadPool& threads);
 
   /// The top level. Rays are traced with an EmbreeContext.
   RTCScene top_level() const { return top_level_.get(); }
@@ -90,11 +91,14 @@ class EmbreeScene {
   void prepare_coverage_tests(const TraceScene& scene, std::vector<bool>& filtered);
   BottomLevel& bottom_level(const GeometryGroup& group, std::span<const Instance> instances);
   void build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances);
-  void refit(BottomLevel& level, const GeometryGroup& group);
-  void rebuild_top_level(const std::vector<GeometryGroup>& groups, const std::vector<const BottomLevel*>& levels);
+  void refit_deformed(const std::vector<GeometryGroup>& groups, const std::vector<BottomLevel*>& levels,
+                      std::span<const Instance> instances, ThreadPool& threads);
+  void refit(BottomLevel& level, const GeometryGroup& group) const;
+  void rebuild_top_level(const std::vector<GeometryGroup>& groups, const std::vector<BottomLevel*>& levels);
   bool show(Slot& slot, std::uint32_t id, const BottomLevel& level, const glm::mat4& world_from_object);
   void drop_unused();
   void throw_on_error() const;
+  static void throw_on(RTCError error);
 
   std::atomic<std::int64_t> memory_bytes_{0};  // outlives the device, which counts into it
   EmbreeDevice device_;

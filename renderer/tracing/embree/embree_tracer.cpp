@@ -124,7 +124,7 @@ class EmbreeTracer final : public Tracer, private HostTracer {
   HostTracer* host() override { return this; }
 
   void update(const TraceScene& scene) override {
-    scene_.update(scene);
+    scene_.update(scene, pool_);
     updated_ = scene;
     wide_hierarchy_.reset();
   }
