@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "renderer/check.h"
+#include "renderer/gl/fence.h"
 
 namespace lightwell::gl {
 
@@ -88,12 +89,9 @@ bool Buffer::reserve(std::uint64_t size_bytes) {
 }
 
 void wait_for_device() {
-  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-  const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr GLuint64 kOneSecondNs = 1'000'000'000;
-  while (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, kOneSecondNs) == GL_TIMEOUT_EXPIRED) {
-  }
-  glDeleteSync(fence);
+  Fence fence;
+  fence.set();
+  fence.wait();
 }
 
 }  // namespace lightwell::gl

@@ -28,6 +28,8 @@ class DeformedShape {
   /// One of which only positions are known: no device can make it.
   explicit DeformedShape(std::vector<glm::vec3> positions);
 
+  /// Known by its positions alone.
+  bool is_given() const { return primitive_ == nullptr; }
   std::size_t vertex_count() const;
   std::span<const glm::mat4> world_from_mesh() const;  // empty: no skin
   std::span<const float> morph_weights() const { return morph_weights_; }

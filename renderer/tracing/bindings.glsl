@@ -14,8 +14,15 @@
 #define TRACE_BINDING_PIXELS 13
 #define TRACE_BINDING_DIRECTIONS 14
 #define TRACE_BINDING_TESTS 15
+#define TRACE_BINDING_REFIT_WORDS 11
+#define TRACE_BINDING_POSITIONS 12
+#define TRACE_BINDING_REFIT_COST 13
 
 #define TRACE_GROUP_SIZE 64
 // Levels of inner nodes, each of which may leave one entry on the traversal stack.
 #define TRACE_TOP_LEVELS 24
 #define TRACE_BOTTOM_LEVELS 40
+
+// Relative costs of the surface-area heuristic: one visit of a node (two boxes) against one triangle.
+#define TRACE_NODE_COST 1.2
+#define TRACE_ITEM_COST 1.0

@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "renderer/check.h"
+#include "renderer/tracing/bindings.glsl"
 
 namespace lightwell {
 namespace {
 
-// Relative costs of the surface-area heuristic: one visit of a node (two boxes) against one triangle.
-constexpr float kNodeCost = 1.2f, kItemCost = 1.0f;
+constexpr auto kNodeCost = static_cast<float>(TRACE_NODE_COST), kItemCost = static_cast<float>(TRACE_ITEM_COST);
 constexpr std::size_t kBins = 16;
 constexpr std::uint32_t kParallelItems = 8192;  // smaller hierarchies are built by one thread
 

@@ -149,7 +149,7 @@ class ComputeTracer final : public Tracer {
   TraceProgram covered_closest_hit_{shaders_, false, true, way_};
   TraceProgram any_hit_{shaders_, true, false, way_}, covered_any_hit_{shaders_, true, true, way_};
   std::optional<CandidateProgram> candidates_, covered_candidates_;  // made when patches are first used
-  DeviceHierarchies hierarchies_;
+  DeviceHierarchies hierarchies_{shaders_};
 };
 
 }  // namespace

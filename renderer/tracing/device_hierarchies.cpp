@@ -6,6 +6,7 @@
 
 #include "renderer/check.h"
 #include "renderer/tracing/bindings.glsl"
+#include "renderer/tracing/upload_if_changed.h"
 
 namespace lightwell {
 namespace {
@@ -52,6 +53,11 @@ std::vector<BvhNode> moved(std::vector<BvhNode> nodes, std::uint32_t first_node,
   return nodes;
 }
 
+// Whether the device has made the positions that it is to be traced at.
+bool is_on_device(const GeometryGroup& group, const TraceScene& scene) {
+  return scene.device_positions.buffer && !group.deformed->is_given();
+}
+
 Box in_world(const Box& box, const glm::mat4& world_from_object) {
   Box world;
   for (int corner = 0; corner < 8; ++corner) {
@@ -64,39 +70,23 @@ Box in_world(const Box& box, const glm::mat4& world_from_object) {
   return {world.min - slack, world.max + slack};
 }
 
-// Replaces the buffer's contents if they differ from what was uploaded last.
-template <class T>
-void upload_if_changed(gl::Buffer& buffer, std::vector<T>& uploaded, std::vector<T> wanted) {
-  const std::size_t size_bytes = wanted.size() * sizeof(T);
-  if (wanted.size() == uploaded.size() &&
-      (wanted.empty() || std::memcmp(wanted.data(), uploaded.data(), size_bytes) == 0))
-    return;
-  uploaded = std::move(wanted);
-  buffer.reserve(std::bit_ceil(std::uint64_t{size_bytes}));
-  buffer.upload(std::span<const T>(uploaded));
-}
-
 }  // namespace
 
-DeviceHierarchies::DeviceHierarchies()
+DeviceHierarchies::DeviceHierarchies(gl::ShaderLibrary& shaders)
     : nodes_("hierarchy nodes", sizeof(BvhNode)),
       triangles_("hierarchy triangles", sizeof(DeviceTriangle)),
       places_("triangle places", sizeof(std::uint32_t)),
-      corner_uvs_("texture coordinates for coverage", sizeof(glm::vec2)),
-      alpha_("alpha planes for coverage", sizeof(std::uint32_t)),
+      shaders_(shaders),
       group_buffer_("geometry groups", 0),
-      coverage_buffer_("coverage tests", 0),
       instance_buffer_("instances of hierarchies", 0) {}
 
 void DeviceHierarchies::update(const TraceScene& scene) {
-  LIGHTWELL_CHECK_OP(scene.instances.size(), ==, scene.coverage.size());
   ++frame_;
-  std::vector<bool> filtered;
-  update_coverage(scene, filtered);
-  const std::vector<GeometryGroup> groups = group_instances(scene.instances, filtered);
+  const std::vector<GeometryGroup> groups =
+      group_instances(scene.instances, coverage_.update(scene, kFramesUntilDropped));
   std::vector<const BottomLevel*> levels;
   levels.reserve(groups.size());
-  for (const GeometryGroup& group : groups) levels.push_back(&bottom_level(group, scene.instances));
+  for (const GeometryGroup& group : groups) levels.push_back(&bottom_level(group, scene));
   build_top_level(groups, levels, scene.instances.size());
   drop_unused();
 }
@@ -105,9 +95,7 @@ void DeviceHierarchies::bind() const {
   nodes_.bind_storage(TRACE_BINDING_NODES);
   triangles_.bind_storage(TRACE_BINDING_TRIANGLES);
   group_buffer_.bind_storage(TRACE_BINDING_GROUPS);
-  coverage_buffer_.bind_storage(TRACE_BINDING_COVERAGE);
-  corner_uvs_.bind_storage(TRACE_BINDING_CORNER_UVS);
-  alpha_.bind_storage(TRACE_BINDING_ALPHA);
+  coverage_.bind();
 }
 
 void DeviceHierarchies::bind_places() const {
@@ -116,29 +104,30 @@ void DeviceHierarchies::bind_places() const {
 }
 
 std::uint64_t DeviceHierarchies::memory_bytes() const {
-  return nodes_.size_bytes() + triangles_.size_bytes() + places_.size_bytes() + corner_uvs_.size_bytes() +
-         alpha_.size_bytes() + group_buffer_.size_bytes() + coverage_buffer_.size_bytes() +
-         instance_buffer_.size_bytes();
+  return nodes_.size_bytes() + triangles_.size_bytes() + places_.size_bytes() + coverage_.memory_bytes() +
+         group_buffer_.size_bytes() + instance_buffer_.size_bytes() +
+         (device_refit_ ? device_refit_->memory_bytes() : 0);
 }
 
 const DeviceHierarchies::BottomLevel& DeviceHierarchies::bottom_level(const GeometryGroup& group,
-                                                                      std::span<const Instance> instances) {
+                                                                      const TraceScene& scene) {
   const auto known = bottom_levels_.find(group.key);
   if (known == bottom_levels_.end()) {
     auto built = std::make_unique<BottomLevel>();
-    build(*built, group, instances);
+    build(*built, group, scene);
     built->last_used = frame_;
     return *bottom_levels_.emplace(group.key, std::move(built)).first->second;
   }
   BottomLevel& level = *known->second;
-  if (!same_shape(group.deformed, level.shape)) refit(level, group);
+  if (!same_shape(group.deformed, level.shape)) refit(level, group, scene);
   level.last_used = frame_;
   return level;
 }
 
-void DeviceHierarchies::build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances) {
+void DeviceHierarchies::build(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene) {
+  level.primitives.clear();
   for (std::uint32_t i = 0; i < group.key.primitives.size(); ++i)
-    level.primitives.push_back(instances[group.first_instance + i].primitive);
+    level.primitives.push_back(scene.instances[group.first_instance + i].primitive);
   const std::vector<Box> boxes = boxes_of(triangles_of(group));
   Bvh bvh = build_bvh(boxes, kBottomLimits, &threads_);
   level.nodes = nodes_.allocate(static_cast<std::uint32_t>(bvh.nodes.size()));
@@ -150,20 +139,46 @@ void DeviceHierarchies::build(BottomLevel& level, const GeometryGroup& group, st
   level.shape = group.deformed;
   if (!group.deformed) return;
   level.built_cost = expected_cost(bvh);
-  level.bvh = std::move(bvh);
+  if (!is_on_device(group, scene)) {
+    level.bvh = std::move(bvh);
+    return;
+  }
+  if (!device_refit_) device_refit_.emplace(shaders_);
+  level.plan = device_refit_->plan(bvh, *level.primitives.front(), level.nodes.first());
 }
 
-void DeviceHierarchies::refit(BottomLevel& level, const GeometryGroup& group) {
+void DeviceHierarchies::refit(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene) {
+  if (!is_on_device(group, scene) && level.bvh)
+    refit_by_processor(level, group);
+  else if (is_on_device(group, scene) && level.plan &&
+           device_refit_->cost(*level.plan) <= kRefitCostLimit * level.built_cost)
+    refit_on_device(level, group, scene);
+  else
+    build(level, group, scene);
+}
+
+void DeviceHierarchies::refit_by_processor(BottomLevel& level, const GeometryGroup& group) {
   const std::vector<Box> boxes = boxes_of(triangles_of(group));
-  refit_bvh(level.bvh, boxes);
-  if (expected_cost(level.bvh) > kRefitCostLimit * level.built_cost) {
+  refit_bvh(*level.bvh, boxes);
+  if (expected_cost(*level.bvh) > kRefitCostLimit * level.built_cost) {
     level.bvh = build_bvh(boxes, kBottomLimits, &threads_);
-    level.built_cost = expected_cost(level.bvh);
-    level.nodes = nodes_.allocate(static_cast<std::uint32_t>(level.bvh.nodes.size()));
+    level.built_cost = expected_cost(*level.bvh);
+    level.nodes = nodes_.allocate(static_cast<std::uint32_t>(level.bvh->nodes.size()));
   }
-  upload(level, level.bvh, group);
-  level.root = moved(level.bvh.root, level.nodes.first(), level.triangles.first());
-  level.bounds = level.bvh.bounds;
+  upload(level, *level.bvh, group);
+  level.root = moved(level.bvh->root, level.nodes.first(), level.triangles.first());
+  level.bounds = level.bvh->bounds;
+  level.shape = group.deformed;
+}
+
+void DeviceHierarchies::refit_on_device(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene) {
+  device_refit_->run(*level.plan,
+                     {nodes_, triangles_, level.nodes.first(), level.nodes.count(), level.triangles.first(),
+                      level.triangles.count()},
+                     *scene.device_positions.buffer, scene.device_positions.first[group.first_instance]);
+  const Bounds& bounds = group.deformed->bounds();
+  const glm::vec3 slack = 1e-5f * (bounds.max - bounds.min);  // the device rounds otherwise
+  level.bounds = {bounds.min - slack, bounds.max + slack};
   level.shape = group.deformed;
 }
 
@@ -239,70 +254,9 @@ void DeviceHierarchies::build_top_level(const std::vector<GeometryGroup>& groups
   upload_if_changed(instance_buffer_, instances_, find_instances(groups, levels, top.items, instance_count));
 }
 
-void DeviceHierarchies::update_coverage(const TraceScene& scene, std::vector<bool>& filtered) {
-  std::vector<DeviceCoverage> tests;
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const CoverageTest test = prepare_coverage(scene.coverage[i], *scene.instances[i].primitive, alpha_ranges_);
-    filtered.push_back(test.outcome != CoverageTest::Outcome::kAlwaysHit);
-    tests.push_back(device_coverage(test, scene, i));
-  }
-  needs_coverage_ = std::find(filtered.begin(), filtered.end(), true) != filtered.end();
-  if (needs_coverage_) upload_if_changed(coverage_buffer_, coverage_, std::move(tests));
-}
-
-DeviceCoverage DeviceHierarchies::device_coverage(const CoverageTest& test, const TraceScene& scene,
-                                                  std::size_t instance) {
-  DeviceCoverage packed{};
-  packed.outcome = static_cast<std::uint32_t>(test.outcome);
-  packed.min_texel = test.min_texel;
-  packed.blend_factor = test.blend_factor;
-  packed.wraps = static_cast<std::uint32_t>(test.wrap_s) | static_cast<std::uint32_t>(test.wrap_t) << 8;
-  packed.u_row = glm::vec4(test.u_row, 0.0f);
-  packed.v_row = glm::vec4(test.v_row, 0.0f);
-  const bool reads_image =
-      test.outcome == CoverageTest::Outcome::kMask || test.outcome == CoverageTest::Outcome::kBlend;
-  if (!test.image || !reads_image) return packed;
-  packed.first_texel = first_texel(scene.coverage[instance].image);
-  packed.width_px = static_cast<std::uint32_t>(test.image->size_px.x);
-  packed.height_px = static_cast<std::uint32_t>(test.image->size_px.y);
-  packed.first_corner = first_corner(scene.instances[instance].primitive, test.uv_set);
-  return packed;
-}
-
-std::uint32_t DeviceHierarchies::first_corner(const std::shared_ptr<const Primitive>& primitive, int uv_set) {
-  CornerUvs& corners = corners_[{primitive.get(), uv_set}];
-  corners.last_used = frame_;
-  if (corners.primitive) return corners.range.first();
-  const auto& uvs = uv_set == 0 ? primitive->uv0 : primitive->uv1;
-  std::vector<glm::vec2> unrolled;
-  unrolled.reserve(primitive->indices.size());
-  for (const std::uint32_t index : primitive->indices) unrolled.push_back(uvs[index]);
-  corners.range = corner_uvs_.allocate(static_cast<std::uint32_t>(unrolled.size()));
-  corner_uvs_.upload(corners.range, std::span<const glm::vec2>(unrolled));
-  corners.primitive = primitive;
-  return corners.range.first();
-}
-
-std::uint32_t DeviceHierarchies::first_texel(const std::shared_ptr<const Image>& image) {
-  AlphaPlane& plane = planes_[image.get()];
-  plane.last_used = frame_;
-  if (!plane.image) {
-    std::vector<std::uint32_t> words((image->rgba.size() / 4 + 3) / 4);
-    for (std::size_t texel = 0; texel < image->rgba.size() / 4; ++texel)
-      words[texel / 4] |= std::uint32_t{image->rgba[4 * texel + 3]} << (8 * (texel % 4));
-    plane.words = alpha_.allocate(static_cast<std::uint32_t>(words.size()));
-    alpha_.upload(plane.words, std::span<const std::uint32_t>(words));
-    plane.image = image;
-  }
-  return 4 * plane.words.first();
-}
-
 void DeviceHierarchies::drop_unused() {
   const auto is_unused = [&](std::uint64_t last_used) { return last_used + kFramesUntilDropped < frame_; };
   std::erase_if(bottom_levels_, [&](const auto& entry) { return is_unused(entry.second->last_used); });
-  std::erase_if(corners_, [&](const auto& entry) { return is_unused(entry.second.last_used); });
-  std::erase_if(planes_, [&](const auto& entry) { return is_unused(entry.second.last_used); });
-  alpha_ranges_.drop_unused();
 }
 
 }  // namespace lightwell

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <unordered_map>
+#include <optional>
 #include <vector>
 
 #include "renderer/tracing/bvh.h"
-#include "renderer/tracing/coverage.h"
+#include "renderer/tracing/device_coverage.h"
 #include "renderer/tracing/device_pool.h"
+#include "renderer/tracing/device_refit.h"
 #include "renderer/tracing/geometry_groups.h"
 #include "renderer/tracing/thread_pool.h"
 
@@ -27,14 +28,6 @@ struct DeviceGroup {
 };
 static_assert(sizeof(DeviceGroup) == 64);
 
-/// std430, 64 bytes; `coverage_words` in coverage.glsl.
-struct DeviceCoverage {
-  std::uint32_t outcome, min_texel, blend_factor, wraps;         // wraps: s | t << 8
-  std::uint32_t first_texel, width_px, height_px, first_corner;  // width 0: no image
-  glm::vec4 u_row, v_row;                                        // w is unused
-};
-static_assert(sizeof(DeviceCoverage) == 64);
-
 /// std430, 8 bytes; `instances` in candidates.comp. How to find an instance's triangles by their number.
 struct DeviceInstance {
   std::uint32_t group;        // in the group buffer
@@ -44,7 +37,7 @@ static_assert(sizeof(DeviceInstance) == 8);
 
 class DeviceHierarchies {
  public:
-  DeviceHierarchies();
+  explicit DeviceHierarchies(gl::ShaderLibrary& shaders);
 
   /// As Tracer::update. Throws std::runtime_error if the device cannot hold the scene.
   void update(const TraceScene& scene);
@@ -62,7 +55,7 @@ class DeviceHierarchies {
   /// In the group buffer.
   std::uint32_t group_count() const { return static_cast<std::uint32_t>(groups_.size()); }
 
-  bool needs_coverage() const { return needs_coverage_; }
+  bool needs_coverage() const { return coverage_.are_needed(); }
   std::uint64_t memory_bytes() const;
 
  private:
@@ -72,51 +65,37 @@ class DeviceHierarchies {
     PoolRange nodes, triangles, places;
     std::uint32_t root = 0;  // in the node buffer
     Box bounds;              // in the group's space
-    Bvh bvh;                 // kept for refitting; empty if rigid
     float built_cost = 0.0f;
+    std::optional<Bvh> bvh;                // kept for refitting by the processor
+    std::optional<DeviceRefit::Plan> plan;  // for refitting on the device, where that has the positions
     std::uint64_t last_used = 0;
   };
-  struct CornerUvs {
-    std::shared_ptr<const Primitive> primitive;
-    PoolRange range;
-    std::uint64_t last_used = 0;
-  };
-  struct AlphaPlane {
-    std::shared_ptr<const Image> image;
-    PoolRange words;
-    std::uint64_t last_used = 0;
-  };
-
-  const BottomLevel& bottom_level(const GeometryGroup& group, std::span<const Instance> instances);
-  void build(BottomLevel& level, const GeometryGroup& group, std::span<const Instance> instances);
-  void refit(BottomLevel& level, const GeometryGroup& group);
+  const BottomLevel& bottom_level(const GeometryGroup& group, const TraceScene& scene);
+  void build(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene);
+  void refit(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene);
+  void refit_by_processor(BottomLevel& level, const GeometryGroup& group);
+  void refit_on_device(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene);
   std::vector<DeviceInstance> find_instances(const std::vector<GeometryGroup>& groups,
                                              const std::vector<const BottomLevel*>& levels,
                                              const std::vector<std::uint32_t>& order, std::size_t count) const;
   void upload(const BottomLevel& level, const Bvh& bvh, const GeometryGroup& group);
   void build_top_level(const std::vector<GeometryGroup>& groups, const std::vector<const BottomLevel*>& levels,
                        std::size_t instance_count);
-  void update_coverage(const TraceScene& scene, std::vector<bool>& filtered);
-  DeviceCoverage device_coverage(const CoverageTest& test, const TraceScene& scene, std::size_t instance);
-  std::uint32_t first_corner(const std::shared_ptr<const Primitive>& primitive, int uv_set);
-  std::uint32_t first_texel(const std::shared_ptr<const Image>& image);
   void drop_unused();
 
   ThreadPool threads_;
-  DevicePool nodes_, triangles_, places_, corner_uvs_, alpha_;
+  DevicePool nodes_, triangles_, places_;
+  DeviceCoverageTests coverage_;
+  gl::ShaderLibrary& shaders_;
+  std::optional<DeviceRefit> device_refit_;  // made when something deforms
   std::map<GeometryKey, std::unique_ptr<BottomLevel>> bottom_levels_;
-  std::map<std::pair<const Primitive*, int>, CornerUvs> corners_;  // by uv set as well
-  std::unordered_map<const Image*, AlphaPlane> planes_;
-  AlphaRanges alpha_ranges_;
 
-  gl::Buffer group_buffer_, coverage_buffer_, instance_buffer_;
+  gl::Buffer group_buffer_, instance_buffer_;
   std::vector<DeviceGroup> groups_;  // as they stand in the buffer
-  std::vector<DeviceCoverage> coverage_;
   std::vector<DeviceInstance> instances_;
   std::vector<BvhNode> top_nodes_;
   PoolRange top_range_;
   std::uint32_t top_root_ = kNothing;
-  bool needs_coverage_ = false;
   std::uint64_t frame_ = 0;
 };
 

@@ -19,7 +19,9 @@ struct TraceWorld {
   std::vector<Coverage> coverage;
   glm::vec3 bounds_min{-10.0f}, bounds_max{10.0f};  // where random rays start
 
-  TraceScene scene() const { return {instances, coverage}; }
+  DevicePositions positions{};  // of deformed instances, where a test brings them to the device
+
+  TraceScene scene() const { return {instances, coverage, positions}; }
   void add(std::shared_ptr<const Primitive> primitive, const glm::mat4& world_from_object = glm::mat4(1.0f),
            Coverage covered = {});
 };

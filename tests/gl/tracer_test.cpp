@@ -148,6 +148,74 @@ TEST_F(TracerTest, FollowsDeformedGeometry) {
   }
 }
 
+/// `rest` and what it may be morphed to.
+std::shared_ptr<const Primitive> with_targets(const std::shared_ptr<const Primitive>& rest) {
+  auto primitive = std::make_shared<Primitive>(*rest);
+  MorphTarget wave, growth;
+  for (const glm::vec3& p : rest->positions) {
+    wave.positions.push_back({0.0f, std::sin(p.x), 0.0f});
+    growth.positions.push_back(p);
+  }
+  primitive->morph_targets = {wave, growth};
+  fill_bounds(*primitive);
+  return primitive;
+}
+
+// Several meshes at once; in frame 4 they are far from where they were built, in frame 5 they are as in frame 4.
+TEST_F(TracerTest, FollowsWhatTheDeviceDeforms) {
+  const auto rest = with_targets(terrain(32));
+  const auto vertices = static_cast<std::uint32_t>(rest->positions.size());
+  constexpr std::uint32_t kCopies = 3;
+  for (int frame = 0; frame < 8; ++frame) {
+    TraceWorld world;
+    world.name = "deformed by the device, frame " + std::to_string(frame);
+    gl::Buffer buffer("positions", (kCopies + 1) * vertices * sizeof(glm::vec3));
+    std::vector<std::uint32_t> first{0};  // of the rigid one, which nobody looks for there
+    world.add(rest, glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, -9.0f, 0.0f)));
+    for (std::uint32_t copy = 0; copy < kCopies; ++copy) {
+      const auto phase = static_cast<float>(frame == 5 ? 4 : frame);
+      world.add(rest, glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, 3.0f * static_cast<float>(copy), 0.0f)));
+      world.instances.back().node = static_cast<int>(copy);
+      world.instances.back().deformed = std::make_shared<DeformedShape>(
+          rest, nullptr, std::vector<float>{0.4f * phase, frame == 4 || frame == 5 ? 2.0f : 0.0f});
+      first.push_back((copy + 1) * vertices);
+      buffer.upload(positions_of(world.instances.back()), first.back() * sizeof(glm::vec3));
+    }
+    world.positions = {&buffer, first};
+    const std::vector<Ray> rays = random_rays(world, 300, 6);
+    std::vector<Hit> expected;
+    for (const Ray& ray : rays) expected.push_back(brute_force(world, ray).hit);
+    for (const auto& [name, result] : trace_all(world, rays)) expect_agreement(world, rays, expected, result.hits);
+  }
+}
+
+// What the device has counts, not what the processor would make of it.
+TEST_F(TracerTest, ADevicesTracerNeedsNoPositionsOfTheProcessors) {
+  const auto flat = [] {
+    auto primitive = std::make_shared<Primitive>(*terrain(4));
+    for (glm::vec3& p : primitive->positions) p.y = 0.0f;
+    primitive->morph_targets.emplace_back().positions.assign(primitive->positions.size(), glm::vec3(0.0f, 1.0f, 0.0f));
+    fill_bounds(*primitive);
+    return std::shared_ptr<const Primitive>(primitive);
+  }();
+  gl::Buffer buffer("positions", flat->positions.size() * sizeof(glm::vec3));
+  const std::vector<std::uint32_t> first{0};
+  const std::vector<Ray> down = {{{0.3f, 5.0f, 0.2f}, 0.0f, {0.0f, -1.0f, 0.0f}, 100.0f}};
+  for (const auto& [weight, height_m] : {std::pair{0.0f, 0.0f}, std::pair{1.0f, 0.75f}}) {
+    TraceWorld world;
+    world.name = "flat";
+    world.add(flat);
+    world.instances[0].deformed = std::make_shared<DeformedShape>(flat, nullptr, std::vector<float>{weight});
+    std::vector<glm::vec3> made = flat->positions;
+    for (glm::vec3& p : made) p.y = height_m;
+    buffer.upload(std::span<const glm::vec3>(made));
+    world.positions = {&buffer, first};
+    auto results = trace_all(world, down);
+    results.erase("embree");
+    for (const auto& [name, result] : results) EXPECT_FLOAT_EQ(result.hits[0].t, 5.0f - height_m) << name;
+  }
+}
+
 TEST_F(TracerTest, GeometryThatWasDroppedIsBuiltAgain) {
   const TraceWorld world = world_of("dropped", random_triangles(200, 2.0f, 7));
   const TraceWorld other = world_of("another", random_triangles(300, 2.0f, 8));
