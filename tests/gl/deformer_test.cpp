@@ -41,7 +41,8 @@ std::shared_ptr<const Primitive> random_primitive(std::uint32_t count, const Mak
     primitive->colors.push_back(glm::vec4(0.25f));
     if (i % 3 == 2) primitive->indices.insert(primitive->indices.end(), {i - 2, i - 1, i});
     if (!making.skin) continue;
-    primitive->joints.push_back(glm::uvec4(random() % 4, random() % 4, random() % 4, random() % 9));  // 4 to 8: the last
+    primitive->joints.push_back(
+        glm::uvec4(random() % 4, random() % 4, random() % 4, random() % 9));  // 4 to 8: the last
     const glm::vec4 weights = glm::abs(glm::vec4(uniform_3(random), uniform(random))) + 0.01f;
     primitive->weights.push_back(weights / (weights.x + weights.y + weights.z + weights.w));
   }
@@ -165,15 +166,17 @@ TEST_F(DeformerTest, MakesWhatTheProcessorMakes) {
   for (std::size_t i = 0; i < primitives.size(); ++i)
     for (std::uint32_t copy = 0; copy < 2; ++copy) {  // two instances of a primitive, shaped differently
       const bool skinned = !primitives[i]->joints.empty();
-      tasks.push_back({std::make_shared<DeformedShape>(primitives[i], skinned ? random_matrices(++seed) : nullptr,
-                                                       std::vector<float>{0.7f, 0.0f, -0.4f - static_cast<float>(copy)}),
-                       i, vertex, triangle});
+      tasks.push_back(
+          {std::make_shared<DeformedShape>(primitives[i], skinned ? random_matrices(++seed) : nullptr,
+                                           std::vector<float>{0.7f, 0.0f, -0.4f - static_cast<float>(copy)}),
+           i, vertex, triangle});
       vertex += static_cast<std::uint32_t>(primitives[i]->positions.size());
       triangle += static_cast<std::uint32_t>(primitives[i]->indices.size() / 3);
     }
   geometry.reserve_deformed(vertex - geometry.rigid_vertices(), triangle - geometry.rigid_triangles());
   run(tasks, geometry);
-  for (std::size_t i = 0; i < tasks.size(); ++i) expect_as_by_processor(geometry, tasks[i], "task " + std::to_string(i));
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    expect_as_by_processor(geometry, tasks[i], "task " + std::to_string(i));
 }
 
 TEST_F(DeformerTest, GivesShapesTheirPositionsWhereTheProcessorCanReadThem) {
