@@ -1,5 +1,5 @@
-// What skins and morph targets of a set of primitives are made from on the device, beside their rigid vertices: uploaded
-// once, whatever moves.
+// What skins and morph targets of a set of primitives are made from on the device, beside their rigid vertices:
+// uploaded once, whatever moves.
 #pragma once
 
 #include <cstdint>

@@ -12,6 +12,7 @@
 
 #include "renderer/gl/memory.h"
 #include "renderer/renderer.h"
+#include "renderer/scene/bounds.h"
 #include "renderer/scene/builtin.h"
 #include "renderer/scene/pose.h"
 #include "renderer/tracing/embree/embree_tracer.h"
@@ -66,6 +67,7 @@ Scene bending_cornell() {
     primitive.morph_targets = {leaning};
     primitive.joints.assign(primitive.positions.size(), glm::uvec4(0));
     primitive.weights.assign(primitive.positions.size(), glm::vec4(1, 0, 0, 0));
+    fill_bounds(primitive);
   }
   scene.meshes.push_back(mesh);
   block->mesh = static_cast<int>(scene.meshes.size()) - 1;

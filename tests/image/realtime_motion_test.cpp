@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "renderer/image_metrics/compare.h"
+#include "renderer/scene/bounds.h"
 #include "renderer/scene/builtin.h"
 #include "tests/image/film.h"
 
@@ -49,6 +50,7 @@ Scene room_with_card(Carrier carrier, float way_m) {
     card.morph_targets.push_back(target);
     node.weights = {way_m};
   }
+  fill_bounds(card);
   return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "renderer/passes/view_rays.h"
+#include "renderer/scene/bounds.h"
 #include "renderer/scene/builtin.h"
 #include "renderer/scene/builtin/scene_builder.h"
 #include "renderer/scene/builtin/shapes.h"
@@ -176,6 +177,7 @@ Scene morphing_quad() {
   Scene scene = maker.take();
   Mesh mesh = *scene.meshes[0];
   mesh.primitives[0].morph_targets = {{{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}}, {}, {}}};
+  fill_bounds(mesh.primitives[0]);
   mesh.weights = {0.0f};
   scene.meshes[0] = std::make_shared<const Mesh>(mesh);
   AnimationChannel channel;
