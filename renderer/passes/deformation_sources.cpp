@@ -23,7 +23,8 @@ std::vector<DeviceInfluence> influences_of(const Primitive& primitive) {
 std::uint32_t append(const std::vector<glm::vec3>& values, std::size_t vertices, std::vector<glm::vec3>& all) {
   if (values.empty()) return DeformationSources::kNone;
   const auto first = static_cast<std::uint32_t>(all.size());
-  all.insert(all.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), vertices)));
+  all.insert(all.end(), values.begin(),
+             values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), vertices)));
   all.resize(first + vertices, glm::vec3(0.0f));
   return first;
 }

@@ -74,8 +74,8 @@ void Deformer::prepare(const std::vector<DeformTask>& tasks, const DeviceGeometr
     packed.count = static_cast<std::uint32_t>(task.shape->vertex_count());
     packed.first_source = packed.source_vertex = geometry.first_vertex(task.primitive);
     packed.first_target = packed.target_vertex = task.first_vertex;
-    packed.first_influence = matrices.empty() ? DeformationSources::kNone
-                                              : geometry.deformation_sources().first_influence(task.primitive);
+    packed.first_influence =
+        matrices.empty() ? DeformationSources::kNone : geometry.deformation_sources().first_influence(task.primitive);
     packed.first_matrix = known->second;
     packed.last_joint = static_cast<std::uint32_t>(std::max<std::size_t>(matrices.size(), 1) - 1);
     packed.first_morph = static_cast<std::uint32_t>(morphs_.size());

@@ -13,8 +13,8 @@ class Deformer {
  public:
   explicit Deformer(gl::ShaderLibrary& shaders);
 
-  /// Makes what the tasks ask for, which must have room there, unless it is there already. UNIT_POSITIONS, _VERTICES and
-  /// _TRIANGLES must read the geometry's. The shapes get their positions, too, if those are host-visible; then this
+  /// Makes what the tasks ask for, which must have room there, unless it is there already. UNIT_POSITIONS, _VERTICES
+  /// and _TRIANGLES must read the geometry's. The shapes get their positions, too, if those are host-visible; then this
   /// waits for the device.
   void run(const std::vector<DeformTask>& tasks, DeviceGeometry& geometry);
 

@@ -33,8 +33,7 @@ void fill_bounds(Primitive& primitive) {
   primitive.bounds_max = own.max;
 
   std::map<std::uint32_t, Bounds> of_joints;
-  const std::size_t skinned =
-      std::min({primitive.positions.size(), primitive.joints.size(), primitive.weights.size()});
+  const std::size_t skinned = std::min({primitive.positions.size(), primitive.joints.size(), primitive.weights.size()});
   for (std::size_t i = 0; i < skinned; ++i)
     for (int k = 0; k < 4; ++k)
       if (primitive.weights[i][k] != 0.0f) of_joints[primitive.joints[i][k]].add(primitive.positions[i]);

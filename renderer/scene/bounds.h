@@ -25,9 +25,9 @@ Bounds bounds_of(std::span<const glm::vec3> points);
 /// targets reach. Whoever makes a primitive calls it last.
 void fill_bounds(Primitive& primitive);
 
-/// A box that holds the primitive's vertices however few of them the matrices and weights bring to its sides; of a rigid
-/// joint's vertices it is exact. Parameters as of morph() and skin(); without matrices it is in the primitive's own
-/// space.
+/// A box that holds the primitive's vertices however few of them the matrices and weights bring to its sides; of a
+/// rigid joint's vertices it is exact. Parameters as of morph() and skin(); without matrices it is in the primitive's
+/// own space.
 Bounds deformed_bounds(const Primitive& primitive, std::span<const glm::mat4> world_from_mesh,
                        std::span<const float> morph_weights);
 

@@ -39,7 +39,7 @@ struct PlacedCamera {
 struct Pose {
   std::vector<Instance> instances;
   std::vector<PlacedLight> lights;
-  std::vector<PlacedCamera> cameras;             // in the order of their nodes
+  std::vector<PlacedCamera> cameras;  // in the order of their nodes
   // Of all instances, world space; equal when there are none. Skins and morph targets may stay well within.
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
 };

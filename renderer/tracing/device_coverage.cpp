@@ -43,7 +43,7 @@ std::uint64_t DeviceCoverageTests::memory_bytes() const {
 }
 
 DeviceCoverage DeviceCoverageTests::device_coverage(const CoverageTest& test, const TraceScene& scene,
-                                                  std::size_t instance) {
+                                                    std::size_t instance) {
   DeviceCoverage packed{};
   packed.outcome = static_cast<std::uint32_t>(test.outcome);
   packed.min_texel = test.min_texel;

@@ -172,10 +172,10 @@ void DeviceHierarchies::refit_by_processor(BottomLevel& level, const GeometryGro
 }
 
 void DeviceHierarchies::refit_on_device(BottomLevel& level, const GeometryGroup& group, const TraceScene& scene) {
-  device_refit_->run(*level.plan,
-                     {nodes_, triangles_, level.nodes.first(), level.nodes.count(), level.triangles.first(),
-                      level.triangles.count()},
-                     *scene.device_positions.buffer, scene.device_positions.first[group.first_instance]);
+  device_refit_->run(
+      *level.plan,
+      {nodes_, triangles_, level.nodes.first(), level.nodes.count(), level.triangles.first(), level.triangles.count()},
+      *scene.device_positions.buffer, scene.device_positions.first[group.first_instance]);
   const Bounds& bounds = group.deformed->bounds();
   const glm::vec3 slack = 1e-5f * (bounds.max - bounds.min);  // the device rounds otherwise
   level.bounds = {bounds.min - slack, bounds.max + slack};

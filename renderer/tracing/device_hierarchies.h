@@ -66,7 +66,7 @@ class DeviceHierarchies {
     std::uint32_t root = 0;  // in the node buffer
     Box bounds;              // in the group's space
     float built_cost = 0.0f;
-    std::optional<Bvh> bvh;                // kept for refitting by the processor
+    std::optional<Bvh> bvh;                 // kept for refitting by the processor
     std::optional<DeviceRefit::Plan> plan;  // for refitting on the device, where that has the positions
     std::uint64_t last_used = 0;
   };

@@ -101,8 +101,7 @@ void EmbreeScene::update(const TraceScene& scene, ThreadPool& threads) {
   prepare_coverage_tests(scene, filtered);
   placed_.clear();
   for (const Instance& instance : scene.instances)
-    placed_.push_back(
-        {positions_of(instance).data(), instance.primitive->indices.data(), instance.world_from_object});
+    placed_.push_back({positions_of(instance).data(), instance.primitive->indices.data(), instance.world_from_object});
   const std::vector<GeometryGroup> groups = group_instances(scene.instances, filtered);
   std::vector<BottomLevel*> levels;
   levels.reserve(groups.size());
@@ -187,8 +186,7 @@ void EmbreeScene::refit(BottomLevel& level, const GeometryGroup& group) const {
   level.built_in = frame_;
 }
 
-void EmbreeScene::rebuild_top_level(const std::vector<GeometryGroup>& groups,
-                                    const std::vector<BottomLevel*>& levels) {
+void EmbreeScene::rebuild_top_level(const std::vector<GeometryGroup>& groups, const std::vector<BottomLevel*>& levels) {
   bool changed = slots_.size() != groups.size();
   for (std::size_t i = groups.size(); i < slots_.size(); ++i)
     rtcDetachGeometry(top_level_.get(), static_cast<unsigned>(i));
