@@ -7,6 +7,8 @@
 #endif
 #endif
 
+#include "renderer/lanes/compact_entry.h"
+#include "renderer/lanes/compact_walk.h"
 #include "renderer/lanes/hierarchy_walk.h"
 #include "renderer/lanes/shading.h"
 
@@ -284,7 +286,8 @@ __attribute__((flatten)) void gather_scattered(const PatchPixels& pixels, Scatte
 }  // namespace
 
 extern const PatchKernels LIGHTWELL_LANES_TABLE(PatchKernels);
-const PatchKernels LIGHTWELL_LANES_TABLE(PatchKernels) = {kInstructions,  unpack,       start_rays, meet,
-                                                          collect_missed, nearest_hits, gather,     gather_scattered};
+const PatchKernels LIGHTWELL_LANES_TABLE(PatchKernels) = {
+    kInstructions, unpack,     start_rays,          meet,   collect_missed,
+    nearest_hits,  find_entry, nearest_single_hits, gather, gather_scattered};
 
 }  // namespace lightwell::lanes

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "renderer/tracing/compact_hierarchy.h"
 #include "renderer/tracing/wide_hierarchy.h"
 
 namespace lightwell::lanes {
@@ -98,6 +99,21 @@ struct alignas(64) ParallelRays {
   std::uint32_t count;    // up to kChunkPixels
 };
 
+/// Rays of pixels, and what they meet. Those along one direction share an entry.
+struct alignas(64) SingleRays {
+  static constexpr std::uint32_t kMost = 256, kMostEntries = 32;
+  using Row = float[kMost];
+  std::uint32_t pixel[kMost];  // in PatchPixels
+  Row from[3];
+  Row direction_ws[3], pdf;       // as PatchDirection
+  Row t, u, v;                    // t is infinite where nothing is met
+  std::uint32_t instance[kMost];  // in Pose::instances
+  std::uint32_t triangle[kMost];  // in Primitive::indices / 3
+  std::uint8_t entry[kMost];
+  CompactEntry entries[kMostEntries];
+  std::uint32_t count, entry_count;
+};
+
 /// `struct Light` of shaders/lights.glsl as std140 lays it out.
 struct PackedLight {
   float position_ws[3];
@@ -137,6 +153,10 @@ struct PatchKernels {
   void (*collect_missed)(const PatchPixels& pixels, PixelRun run, ParallelRays& rays);
   /// Finds the nearest triangle on each of at least one ray.
   void (*nearest_hits)(const WideHierarchy& hierarchy, ParallelRays& rays);
+  /// Where at least one ray comes into the hierarchy.
+  void (*find_entry)(const CompactHierarchy& hierarchy, const ParallelRays& rays, CompactEntry& entry);
+  /// Finds the nearest triangle on each ray, from its entry on.
+  void (*nearest_single_hits)(const CompactHierarchy& hierarchy, SingleRays& rays);
   /// Adds to the sums what arrives from the candidates that are kept, and from the sky where there is none; nothing
   /// where t is negative.
   void (*gather)(PatchPixels& pixels, PixelRun run, const PatchDirection& direction, const Candidate* candidates,

@@ -24,6 +24,7 @@ HostChunk::HostChunk(const HostBatch& batch, TriangleCache& triangles, std::uint
   lanes::PackedReceivers packed;
   std::memset(&packed, 0, sizeof packed);  // what lies beyond the last pixel is computed with, too
   std::memset(&pixels_, 0, sizeof pixels_);
+  singles_.count = singles_.entry_count = 0;
   sort_by_patch();
   for (std::uint32_t i = 0; i < count_; ++i) {
     const PackedReceiver& receiver = batch.receivers[begin + places_[i]];
@@ -45,6 +46,7 @@ void HostChunk::run() {
       prefetch(runs_[r], direction + 4);
       gather(runs_[r], direction);
     }
+  finish_singles();
   scattered_.finish();
 }
 
@@ -148,6 +150,8 @@ void HostChunk::trace_missed(lanes::PixelRun run, const lanes::PatchDirection& d
   if (missed_.count == 0) return;
   if (batch_.hierarchy)
     trace_together(*batch_.hierarchy, direction);
+  else if (batch_.compact)
+    trace_singly(direction);
   else
     trace(direction);
   traced_ += missed_.count;
@@ -163,6 +167,47 @@ void HostChunk::trace_together(const WideHierarchy& hierarchy, const lanes::Patc
     keep_hit(missed_.pixel[n], direction,
              {missed_.t[n], leaf.instance[which], leaf.triangle[which], missed_.u[n], missed_.v[n]});
   }
+}
+
+// Puts them off until many can be traced at once.
+void HostChunk::trace_singly(const lanes::PatchDirection& direction) {
+  if (singles_.count + missed_.count > lanes::SingleRays::kMost ||
+      singles_.entry_count == lanes::SingleRays::kMostEntries)
+    finish_singles();
+  for (int axis = 0; axis < 3; ++axis) missed_.direction_ws[axis] = direction.direction_ws[axis];
+  kernels_.find_entry(*batch_.compact, missed_, singles_.entries[singles_.entry_count]);
+  if (singles_.entries[singles_.entry_count].count == 0) return;
+  for (std::uint32_t n = 0; n < missed_.count; ++n) {
+    const std::uint32_t at = singles_.count++;
+    singles_.pixel[at] = missed_.pixel[n];
+    for (int axis = 0; axis < 3; ++axis) {
+      singles_.from[axis][at] = missed_.from[axis][n];
+      singles_.direction_ws[axis][at] = direction.direction_ws[axis];
+    }
+    singles_.pdf[at] = direction.pdf;
+    singles_.entry[at] = static_cast<std::uint8_t>(singles_.entry_count);
+    pixels_.t[missed_.pixel[n]] = kMiss;
+  }
+  ++singles_.entry_count;
+}
+
+void HostChunk::finish_singles() {
+  if (singles_.count == 0) return;
+  kernels_.nearest_single_hits(*batch_.compact, singles_);
+  for (std::uint32_t n = 0; n < singles_.count; ++n)
+    if (singles_.t[n] < kNothing) triangles_.prefetch(singles_.instance[n], singles_.triangle[n]);
+  for (std::uint32_t n = 0; n < singles_.count; ++n) {
+    const auto vector = [&](const lanes::SingleRays::Row(&rows)[3]) {
+      return glm::vec3(rows[0][n], rows[1][n], rows[2][n]);
+    };
+    lanes::PatchDirection direction;
+    lanes::assign(direction.direction_ws, vector(singles_.direction_ws));
+    direction.pdf = singles_.pdf[n];
+    const Hit hit{singles_.t[n] < kNothing ? singles_.t[n] : kMiss, singles_.instance[n], singles_.triangle[n],
+                  singles_.u[n], singles_.v[n]};
+    scattered_.add(singles_.pixel[n], vector(singles_.from), direction, hit);
+  }
+  singles_.count = singles_.entry_count = 0;
 }
 
 void HostChunk::trace(const lanes::PatchDirection& direction) {

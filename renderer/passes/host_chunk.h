@@ -21,7 +21,9 @@ struct HostBatch {
   DeviceScene::HostHitData scene;
   const lanes::LightEnvironment& environment;
   const HostTracer& tracer;
-  const WideHierarchy* hierarchy;  // null: the tracer finds what pixels meet beside the candidates
+  // What pixels meet beside the candidates is found in one of these; if both are null, by the tracer.
+  const WideHierarchy* hierarchy;
+  const CompactHierarchy* compact;
 };
 static_assert(sizeof(lanes::PatchDirection) == sizeof(glm::vec4));
 
@@ -56,6 +58,8 @@ class HostChunk {
   void add_candidate(const PlacedTriangle& placed, glm::vec3 direction);
   void trace_missed(lanes::PixelRun run, const lanes::PatchDirection& direction);
   void trace(const lanes::PatchDirection& direction);
+  void trace_singly(const lanes::PatchDirection& direction);
+  void finish_singles();
   void trace_together(const WideHierarchy& hierarchy, const lanes::PatchDirection& direction);
   void keep_hit(std::uint32_t pixel, const lanes::PatchDirection& direction, const Hit& hit);
   std::uint32_t candidate_of(std::uint32_t instance, std::uint32_t triangle, const lanes::PatchDirection& direction);
@@ -77,6 +81,7 @@ class HostChunk {
   std::vector<Hit> candidate_hits_;
   std::uint32_t candidate_count_ = 0;
   lanes::ParallelRays missed_;
+  lanes::SingleRays singles_;
   std::array<Ray, lanes::kChunkPixels> missed_rays_;
   std::array<Hit, lanes::kChunkPixels> missed_hits_;
   std::uint32_t traced_ = 0;

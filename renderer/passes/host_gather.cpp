@@ -66,6 +66,7 @@ void HostGatherPass::begin(const DeviceScene& scene, const ShadowMaps& shadows) 
 
 std::uint64_t HostGatherPass::run(const DeviceScene& scene, HostTracer& tracer, const Batch& batch) {
   const Directions& directions = batch.rays.directions;
+  const WideHierarchy* const wide = batch.trace_missed ? tracer.wide_hierarchy() : nullptr;
   const HostBatch host{host_of<PixelOrigin>(batch.rays.patches.pixel_origins),
                        host_of<PackedReceiver>(batch.rays.patches.receivers),
                        host_of<lanes::PatchDirection>(directions.directions),
@@ -77,7 +78,8 @@ std::uint64_t HostGatherPass::run(const DeviceScene& scene, HostTracer& tracer, 
                        scene.host_hit_data(),
                        lights_->environment,
                        tracer,
-                       batch.trace_missed ? tracer.wide_hierarchy() : nullptr};
+                       wide,
+                       batch.trace_missed && !wide ? tracer.compact_hierarchy() : nullptr};
   gl::wait_for_device();
   if (sums_.reserve(std::uint64_t{batch.rays.slots} * sizeof(glm::vec4))) sum_texels_.attach(sums_);
   auto* sums = reinterpret_cast<glm::vec4*>(sums_.host());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 
+#include "renderer/tracing/compact_hierarchy.h"
 #include "renderer/tracing/tracer.h"
 #include "renderer/tracing/wide_hierarchy.h"
 
@@ -21,6 +22,8 @@ class HostTracer {
   /// Everything as it was at the last update, for rays that share a direction; null where there is too much of it, or
   /// coverage to be tested. Not for several threads at once; valid until the next update.
   virtual const WideHierarchy* wide_hierarchy() = 0;
+  /// The same for any number of triangles, but that none may be deformed, for rays each on its own.
+  virtual const CompactHierarchy* compact_hierarchy() = 0;
   /// The corners of a triangle in the world.
   virtual std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const = 0;
 };

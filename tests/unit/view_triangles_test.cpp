@@ -45,6 +45,7 @@ class Threads final : public HostTracer {
   }
   void closest_hits(std::span<const Ray>, std::span<Hit>) const override {}
   const WideHierarchy* wide_hierarchy() override { return nullptr; }
+  const CompactHierarchy* compact_hierarchy() override { return nullptr; }
   std::array<glm::vec3, 3> corners_ws(std::uint32_t, std::uint32_t) const override { return {}; }
 
  private:

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "renderer/check.h"
+#include "renderer/tracing/compact_scene.h"
 #include "renderer/tracing/embree/candidates.h"
+#include "renderer/tracing/embree/embree_bvh.h"
 #include "renderer/tracing/embree/packet.h"
 #include "renderer/tracing/host_tracer.h"
 #include "renderer/tracing/thread_pool.h"
@@ -127,6 +129,7 @@ class EmbreeTracer final : public Tracer, private HostTracer {
     scene_.update(scene, pool_);
     updated_ = scene;
     wide_hierarchy_.reset();
+    compact_hierarchy_.reset();
   }
 
   void closest_hit(const gl::Buffer& rays, std::uint32_t count, gl::Buffer& hits, HitList* list) override {
@@ -184,7 +187,9 @@ class EmbreeTracer final : public Tracer, private HostTracer {
     finish(list, writer.count());
   }
 
-  std::uint64_t memory_bytes() const override { return scene_.memory_bytes() + world_hierarchy_.memory_bytes(); }
+  std::uint64_t memory_bytes() const override {
+    return scene_.memory_bytes() + world_hierarchy_.memory_bytes() + compact_scene_.memory_bytes();
+  }
 
  private:
   void parallel_for(std::uint32_t count, std::uint32_t chunk,
@@ -205,6 +210,11 @@ class EmbreeTracer final : public Tracer, private HostTracer {
   const WideHierarchy* wide_hierarchy() override {
     if (!wide_hierarchy_) wide_hierarchy_ = world_hierarchy_.update(updated_, pool_);
     return *wide_hierarchy_;
+  }
+  const CompactHierarchy* compact_hierarchy() override {
+    const auto build = [&](std::span<const Box> boxes) { return embree_bvh(scene_.device(), boxes, kWide); };
+    if (!compact_hierarchy_) compact_hierarchy_ = compact_scene_.update(updated_, pool_, build);
+    return *compact_hierarchy_;
   }
   std::array<glm::vec3, 3> corners_ws(std::uint32_t instance, std::uint32_t triangle) const override {
     return scene_.corners_ws(instance, triangle);
@@ -233,6 +243,8 @@ class EmbreeTracer final : public Tracer, private HostTracer {
   TraceScene updated_;  // valid as long as the frame's Pose
   WorldHierarchy world_hierarchy_;
   std::optional<const WideHierarchy*> wide_hierarchy_;  // once it was asked for since the update
+  CompactScene compact_scene_;
+  std::optional<const CompactHierarchy*> compact_hierarchy_;  // likewise
   ChunkLists chunk_lists_;
   int width_ = 4;
 };
