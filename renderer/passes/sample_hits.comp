@@ -67,12 +67,22 @@ const float kLeastAlphaAtHits = 0.25;
 struct PathVertex {
   uint slot;
   uint next;         // where its path goes on
-  uint number;       // in the Sobol sequences
-  uint seed;         // of the decisions here
+  uint number;       // in the sequences of the decisions here
+#ifdef FIRST_HITS
+  NetPlace place;
+#else
+  uint seed;
+#endif
   Ray ray;
   float ray_pdf;     // times how many such rays there are
   float light_share; // of the density of table lights in the sampling that the rays compete with
 };
+
+#ifdef FIRST_HITS
+vec2 random_2d(PathVertex at, uint decision) { return net_2d(at.place, at.number, decision); }
+#else
+vec2 random_2d(PathVertex at, uint decision) { return sobol_2d(at.number, at.seed + decision * 0x9e3779b9u); }
+#endif
 
 #ifdef SMOOTH_PATHS
 bool lamps_light(PathVertex at) { return bounces_of(at.ray.t_max) < most_bounces; }
@@ -143,8 +153,8 @@ struct Step {
 
 void sample_lights(inout Step next, PathVertex at, Hit hit, HitPoint point, mat3 frame) {
 #if defined(LIGHTS_PUNCTUAL) || defined(LIGHTS_TRIANGLES) || defined(LIGHTS_ENVIRONMENT)
-  const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kLight));
-  const vec2 u_choice = sobol_2d(at.number, decision_seed(at.seed, kLightChoice));
+  const vec2 u = random_2d(at, kDecisionLight);
+  const vec2 u_choice = random_2d(at, kDecisionLightChoice);
   const TableSample lamp = sample_light(point.position_ws, !lamps_light(at), u, u_choice.x, u_choice.y);
   const vec3 in_direction = lamp.to_light_ws * frame;
   // The rays that may find the same light are sampled by the cosine.
@@ -173,7 +183,7 @@ vec3 reflectance(PathVertex at, HitPoint point) {
 }
 
 Cells cells_at(PathVertex at, Hit hit, HitPoint point, bool fills) {
-  const vec2 u = sobol_2d(at.number, decision_seed(at.seed, kCell));
+  const vec2 u = random_2d(at, kDecisionCell);
   const float most_side_m = hit.t * kSideOverDistance;
   const CellPlace fine = cell_place(point.position_ws, point.geometric_normal_ws, most_side_m, false, u);
   const CellPlace coarse = cell_place(point.position_ws, point.geometric_normal_ws, most_side_m, true, u);
@@ -195,7 +205,7 @@ CellValue light_of(Cells cells) {
 
 // The ray of the path, should it go on.
 void go_on(inout Step next, PathVertex at, Hit hit, HitPoint point, mat3 frame) {
-  const vec3 in_direction = cosine_hemisphere(sobol_2d(at.number, decision_seed(at.seed, kDirection)));
+  const vec3 in_direction = cosine_hemisphere(random_2d(at, kDecisionNextRay));
   const vec3 in_ws = normalize(frame * in_direction);
   if (!is_above(point, in_direction, in_ws)) return;
   next.ray = Ray(lifted(point.position_ws, point.geometric_normal_ws, hit.t, in_ws), 0.0, in_ws, 1e30);
@@ -219,7 +229,7 @@ PathVertex vertex_of(uint slot) {
   const uint texels = uint(map_size_px.x * map_size_px.y);
   const ivec2 texel = ivec2(slot % texels % uint(map_size_px.x), slot % texels / uint(map_size_px.x));
   at.number = sample_number(slot / texels);
-  at.seed = decision_seed(texel_seed(texel), kDecisionsAtHit);
+  at.place = place_of_texel(texel);
   at.ray_pdf = texelFetch(states_in, int(slot)).a * float(rays_per_texel);
   at.light_share = table_sized_share;
 #else

@@ -55,10 +55,10 @@ vec3 lifted_origin(SurfaceFrame at, bool below) {
   return at.point.position_ws + (below ? -lift_ws : lift_ws);
 }
 
-void sample_direction(uint slot, uint ray, uint texel_seed, SurfaceFrame at) {
+void sample_direction(uint slot, uint ray, NetPlace place, SurfaceFrame at) {
   const uint number = sample_number(ray);
-  const vec2 u = sobol_2d(number, decision_seed(texel_seed, kDecisionRay));
-  const float u_lobe = sobol_1d(number, decision_seed(texel_seed, kDecisionLobe));
+  const vec2 u = net_2d(place, number, kDecisionRay);
+  const float u_lobe = net_1d(place, number, kDecisionLobe);
   const vec3 in_direction = sample_brdf(at.brdf, at.out_direction, u, u_lobe);
   const vec3 in_ws = normalize(at.frame * in_direction);
   const float pdf = brdf_pdf(at.brdf, at.out_direction, in_direction);
@@ -76,8 +76,8 @@ void sample_direction(uint slot, uint ray, uint texel_seed, SurfaceFrame at) {
 
 #ifdef REFRACTED
 // Both rays count whole. No sample of the lights finds what comes through a volume.
-void sample_refraction(uint slot, uint texel_seed, SurfaceFrame at, Brdf through) {
-  const vec2 u = sobol_2d(sample_number(0u), decision_seed(texel_seed, kDecisionLamp) ^ 0x5bd1e995u);
+void sample_refraction(uint slot, NetPlace place, SurfaceFrame at, Brdf through) {
+  const vec2 u = net_2d(place, sample_number(0u), kDecisionRefraction);
   const vec3 in_direction = sample_transmission(through, at.out_direction, u);
   const vec3 in_ws = normalize(at.frame * in_direction);
   const float share = lobe_probabilities(through, at.out_direction).w;
@@ -93,10 +93,9 @@ void sample_refraction(uint slot, uint texel_seed, SurfaceFrame at, Brdf through
 
 #ifdef HAS_SIZED_LIGHTS
 // Its place among the shadow rays is behind those of the hits.
-void sample_lamp(uint texel_index, uint texel_seed, SurfaceFrame at) {
-  const uint lamp_seed = decision_seed(texel_seed, kDecisionLamp);
-  const vec2 u = sobol_2d(frame_number, lamp_seed);
-  const vec2 u_choice = sobol_2d(frame_number, decision_seed(texel_seed, kDecisionLampChoice));
+void sample_lamp(uint texel_index, NetPlace place, SurfaceFrame at) {
+  const vec2 u = net_2d(place, frame_number, kDecisionLamp);
+  const vec2 u_choice = net_2d(place, frame_number, kDecisionLampChoice);
   const TableSample lamp = sample_sized_light(at.point.position_ws, u, u_choice.x, u_choice.y);
   const vec3 in_direction = lamp.to_light_ws * at.frame;
   float rays_pdf = brdf_pdf(at.brdf, at.out_direction, in_direction);
@@ -135,16 +134,16 @@ void main() {
   at.out_direction = at.point.to_camera_ws * at.frame;
   at.brdf = brdf_in_frame(at.point.brdf, at.frame);
   at.albedo = max(directional_albedo(at.point.brdf, max(at.out_direction.z, 0.0)), vec3(1e-4));
-  const uint seed_of_texel = texel_seed(texel);
+  const NetPlace place = place_of_texel(texel);
 #ifdef REFRACTED
   const Brdf through = at.brdf;
   at.brdf.transmission_color = vec3(0.0);
-  if (slot >= texels) sample_refraction(slot, seed_of_texel, at, through);
-  else sample_direction(slot, 0u, seed_of_texel, at);
+  if (slot >= texels) sample_refraction(slot, place, at, through);
+  else sample_direction(slot, 0u, place, at);
 #else
-  sample_direction(slot, slot / texels, seed_of_texel, at);
+  sample_direction(slot, slot / texels, place, at);
 #endif
 #ifdef HAS_SIZED_LIGHTS
-  if (slot < texels) sample_lamp(texel_index, seed_of_texel, at);
+  if (slot < texels) sample_lamp(texel_index, place, at);
 #endif
 }

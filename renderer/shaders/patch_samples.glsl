@@ -1,6 +1,7 @@
 // The indirect map of `realtime`: a texel stands for a patch of the picture, and in every frame another real pixel of the
 // patch stands for the texel. Ray j of texel i lies in slot j * texels + i. Needs sampling, camera.
 // PIXEL_LIST: a row of pixels in place of the map.
+#include "shaders/net_points.glsl"
 
 uniform ivec2 map_size_px;
 uniform vec2 pixels_per_texel;
@@ -11,19 +12,19 @@ uniform uint seed;
 #ifdef PIXEL_LIST
 layout(binding = UNIT_PIXEL_LIST) uniform usamplerBuffer pixel_list;  // y << 16 | x
 
-// Not by the place in the list, for that is another in every run.
-uint texel_seed(ivec2 texel) { return hash(texelFetch(pixel_list, texel.x).x ^ hash(seed ^ 0x3c6ef372u)); }
-
 ivec2 sampled_pixel(ivec2 texel) {
   const uint word = texelFetch(pixel_list, texel.x).x;
   return ivec2(word & 0xffffu, word >> 16);
 }
+
+// Not by the place in the list, for that is another in every run.
+NetPlace place_of_texel(ivec2 texel) { return net_place(uvec2(sampled_pixel(texel)), hash(seed ^ 0x3c6ef372u)); }
 #else
-uint texel_seed(ivec2 texel) { return hash(uvec3(texel, seed)); }
+NetPlace place_of_texel(ivec2 texel) { return net_place(uvec2(texel), seed); }
 
 // The points of a frame lie as the R2 sequence (Roberts 2018), from a start of each texel's own.
 ivec2 sampled_pixel(ivec2 texel) {
-  const uint bits = hash(texel_seed(texel) ^ 0x2545f491u);
+  const uint bits = hash(hash(uvec3(texel, seed)) ^ 0x2545f491u);
   const uvec2 point = uvec2(bits, hash(bits)) + frame_number * uvec2(0xc13fa9aau, 0x91e10da6u);
   const vec2 within = vec2(unit_interval(point.x), unit_interval(point.y));
   return min(ivec2((vec2(texel) + within) * pixels_per_texel), camera.size_px.xy - 1);
@@ -36,8 +37,7 @@ uint sample_number(uint ray) { return frame_number; }  // a pixel's rays are of 
 uint sample_number(uint ray) { return frame_number * rays_per_texel + ray; }
 #endif
 
-// Every decision of a texel's paths has a Sobol sequence of its own.
+// Every decision of a texel's paths has a sequence of its own.
 const uint kDecisionRay = 1u, kDecisionLobe = 2u, kDecisionLamp = 3u, kDecisionLampChoice = 4u;
-const uint kDecisionsAtHit = 5u, kDecisionsAtNextHit = 11u;
-const uint kLight = 0u, kLightChoice = 1u, kDirection = 2u, kCell = 3u;  // at a hit
-uint decision_seed(uint texel_seed, uint decision) { return texel_seed + decision * 0x9e3779b9u; }
+const uint kDecisionLight = 5u, kDecisionLightChoice = 6u, kDecisionNextRay = 7u, kDecisionCell = 8u;  // at a hit
+const uint kDecisionRefraction = 9u;

@@ -62,6 +62,12 @@ TEST(RealtimeReflections, AreLightThatHasBouncedOnce) {
   EXPECT_EQ(direct.next(mirrored_walls()).mean(), glm::vec3(0.0f));
 }
 
+/// The green of three pixels one above the other: a sample of the lamps makes a bright spot of a pixel here and there.
+float middle_of_three(const Pixels& pixels, int x, int y) {
+  const float a = pixels.at(x, y - 1).g, b = pixels.at(x, y).g, c = pixels.at(x, y + 1).g;
+  return std::max(std::min(a, b), std::min(std::max(a, b), c));
+}
+
 // The camera moves; the images in the mirror stay in their places.
 TEST(RealtimeReflections, FollowTheCamera) {
   const Scene scene = mirrored_walls();
@@ -72,8 +78,8 @@ TEST(RealtimeReflections, FollowTheCamera) {
     const Pixels pixels = film.next(scene);
     // The edge of the walls lies at x = 0: 4.5 m behind the eye along its way to the mirror and back.
     const int edge_px = 16 - static_cast<int>(std::round(x_m / (4.5f * std::tan(0.4f)) * 16.0f));
-    EXPECT_NEAR(pixels.at(edge_px - 3, 16).g, 1.0f, 0.05f) << frame;
-    EXPECT_NEAR(pixels.at(edge_px + 3, 16).g, 3.0f, 0.15f) << frame;
+    EXPECT_NEAR(middle_of_three(pixels, edge_px - 3, 16), 1.0f, 0.05f) << frame;
+    EXPECT_NEAR(middle_of_three(pixels, edge_px + 3, 16), 3.0f, 0.15f) << frame;
   }
 }
 
@@ -96,16 +102,24 @@ Scene glossy_room(BackWall back) {
 
 const PlacedCamera kInGlossyRoom = look_at({0.1f, 0.1f, 1.8f}, {0, -0.2f, -1}, 0.85f);
 
-/// How far the mean of a part of the picture is from that of `reference`, as a share of it.
+/// How far the mean of a part of the picture is from that of `reference`, as a share of it. Of several seeds: one's is
+/// a few percent off by chance.
 glm::vec3 difference_to_reference(const Scene& scene, glm::ivec2 low, glm::ivec2 high) {
-  Film film(kInGlossyRoom, realtime_settings(8));
-  for (int frame = 0; frame < 48; ++frame) film.next(scene);
+  constexpr int kSeeds = 8;
+  glm::vec3 found(0.0f);
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    Settings settings = realtime_settings(8);
+    settings.seed = seed;
+    Film film(kInGlossyRoom, settings);
+    for (int frame = 0; frame < 48; ++frame) film.next(scene);
+    found += mean_of(film, scene, 8, low, high) / static_cast<float>(kSeeds);
+  }
   const Pixels truth = render(scene, kInGlossyRoom, reference_settings(8), {32, 32}, 256);
   glm::vec3 expected(0.0f);
   for (int y = low.y; y < high.y; ++y)
     for (int x = low.x; x < high.x; ++x) expected += truth.at(x, y);
   expected /= static_cast<float>((high.x - low.x) * (high.y - low.y));
-  const glm::vec3 difference = mean_of(film, scene, 8, low, high) / expected - 1.0f;
+  const glm::vec3 difference = found / expected - 1.0f;
   std::printf("%+.2f %% red, %+.2f %% green, %+.2f %% blue\n", 100.0 * static_cast<double>(difference.r),
               100.0 * static_cast<double>(difference.g), 100.0 * static_cast<double>(difference.b));
   return glm::abs(difference);
@@ -149,8 +163,12 @@ TEST(RealtimeUnmatchedPixels, ANarrowBarHasItsOwnLight) {
   const PlacedCamera camera = look_at({0, 0, 0}, {0, 0, -1});
   Settings settings = realtime_settings(1);
   settings.indirect_size = 8;
-  Film film(camera, settings, {64, 64});
-  const glm::vec3 found = mean_of(film, scene, 24, {31, 24}, {33, 40});
+  constexpr int kSeeds = 16;  // one's light is a few percent off by chance
+  glm::vec3 found(0.0f);
+  for (settings.seed = 0; settings.seed < kSeeds; ++settings.seed) {
+    Film film(camera, settings, {64, 64});
+    found += mean_of(film, scene, 24, {31, 24}, {33, 40}) / static_cast<float>(kSeeds);
+  }
   const Pixels truth = render(scene, camera, reference_settings(1), {64, 64}, 64);
   glm::vec3 expected(0.0f);
   for (int y = 24; y < 40; ++y) expected += (truth.at(31, y) + truth.at(32, y)) / 32.0f;

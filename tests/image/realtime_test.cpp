@@ -52,6 +52,29 @@ TEST(RealtimeEnvironment, AConvexBodyUnderAWhiteSkyHasItsAlbedo) {
   EXPECT_NEAR(film.mean_after(scene, 0, 2).g, 0.6, 0.002);
 }
 
+// All pixels have the same light. With white noise the means of so many texels differ by 1.4 %.
+TEST(RealtimeEnvironment, TheNoiseOfAFirstFrameIsBlue) {
+  SceneMaker maker;
+  maker.quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, maker.material(lambert(glm::vec3(0.5f))));
+  Scene scene = maker.take();
+  scene.environment.zenith_radiance = glm::vec3(1.0f);
+  scene.environment.horizon_radiance = scene.environment.ground_radiance = glm::vec3(0.0f);
+  Settings settings = realtime_settings(1);
+  settings.samples = 16;  // one ray
+  settings.indirect_size = 128;
+  Film film(look_parallel({0, 3, 0}, {0, 0, 0.01f}, 4.0f), settings, {128, 128});
+  const Pixels pixels = film.next(scene);
+  const float mean = pixels.mean().g;
+  double error = 0.0;
+  for (int corner = 0; corner < 256; ++corner) {
+    float sum = 0.0f;
+    for (int i = 0; i < 64; ++i) sum += pixels.at(corner % 16 * 8 + i % 8, corner / 16 * 8 + i / 8).g / 64.0f;
+    error += static_cast<double>((sum / mean - 1.0f) * (sum / mean - 1.0f)) / 256.0;
+  }
+  std::printf("means of 8 x 8 texels differ by %.3f %%\n", 100.0 * std::sqrt(error));
+  EXPECT_LT(std::sqrt(error), 0.01);
+}
+
 TEST(RealtimeBounces, AClosedEmissiveBoxIsAGeometricSeries) {
   const double emission = 2.0, albedo = 0.6;
   SceneMaker maker;
