@@ -7,6 +7,7 @@ layout(local_size_x = 16, local_size_y = 4) in;
 #include "passes/bindings.glsl"
 #include "shaders/packing.glsl"
 #include "shaders/sampling.glsl"
+#include "shaders/net_points.glsl"
 #include "shaders/brdf.glsl"
 #include "shaders/camera.glsl"
 #include "shaders/g_buffer.glsl"
@@ -62,14 +63,15 @@ uniform uint seed;
 
 void send_other_ray(ivec2 pixel, GBufferPoint point) {
   const uint kCandidates = 4u;
-  const uint pixel_seed = hash(uint(pixel.y << 16 | pixel.x) ^ hash(seed));
+  const uint kDecisionCandidates = 0u, kDecisionTaken = 1u;
+  const NetPlace place = net_place(uvec2(pixel), hash(seed ^ 0x2545f491u));
   TableSample chosen = TableSample(vec3(0.0, 1.0, 0.0), 0.0, vec3(0.0), 0.0);
   vec3 value = vec3(0.0);  // of the chosen one, over its weight
   float weights = 0.0;
-  float u = unit_interval(hash(pixel_seed + frame_number * 0x9e3779b9u));
+  float u = net_1d(place, frame_number, kDecisionTaken);
   for (uint i = 0u; i < kCandidates; ++i) {
-    const Choice choice =
-        choose(other_choices, table_punctual_lights, sobol_1d(frame_number * kCandidates + i, pixel_seed));
+    const float u_candidate = net_1d(place, frame_number * kCandidates + i, kDecisionCandidates);
+    const Choice choice = choose(other_choices, table_punctual_lights, u_candidate);
     const TableSample candidate = sample_chosen_light(choice, point.position_ws, vec2(0.0), 0.0);
     const vec3 given = unshadowed(point, candidate) / float(kCandidates);
     const float weight = luminance(given);
