@@ -70,7 +70,7 @@ class EntrySearch {
   void run() {
     if (!is_finite(entry_.direction)) return;
     open(0);
-    for (;;) {
+    for (int opened = 0; opened < kMostOpened; ++opened) {
       const std::uint32_t largest = largest_node();
       if (largest == entry_.count) return;
       const std::uint32_t node = entry_.child[largest];
@@ -177,6 +177,7 @@ class EntrySearch {
   }
 
   static constexpr float kRoom = 1.2e-7f;  // for rounding
+  static constexpr int kMostOpened = 7;    // further ones take more time than they spare
 
   CompactEntry& entry_;
   const CompactNode* nodes_;

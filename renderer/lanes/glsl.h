@@ -280,6 +280,9 @@ inline vec3& operator+=(vec3& a, vec3 b) {
 inline Float dot(vec3 a, vec3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+inline vec3 cross(vec3 a, vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline Float length(vec3 a) {
   return sqrt(dot(a, a));
 }

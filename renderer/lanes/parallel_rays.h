@@ -48,10 +48,6 @@ vec3 load_wide(const float (&rows)[3][kWide], int first) {
   return {load_float(&rows[0][first]), load_float(&rows[1][first]), load_float(&rows[2][first])};
 }
 
-vec3 cross(vec3 a, vec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // Of a ray in a triangle's plane the quotient is infinite: nothing compares true with what comes of it.
 AffineTriangles affine_triangles(const WideLeaf& leaf, int first, vec3 direction) {
   const vec3 normal = load_wide(leaf.normal, first);

@@ -219,9 +219,37 @@ void fill(const ViewTriangle& triangle, const ViewTarget& target, std::int32_t f
     }
 }
 
+// Where the pixel's ray meets the triangle's plane: Moeller and Trumbore 1997. Clamped, for a sliver's may lie
+// anywhere.
+void find_barycentrics(ViewRow& row) {
+  const vec3 right = all_lanes(row.world_from_object[0]), up = all_lanes(row.world_from_object[1]),
+             back = all_lanes(row.world_from_object[2]), place = all_lanes(row.world_from_object[3]);
+  const Float y = row.y;
+  for (std::uint32_t i = 0; i < row.count; i += kLanes) {
+    const Ints indices = load<Ints>(&row.triangle[i]) * 3;
+    const auto corner_ws = [&](int corner) {
+      const Ints vertex = gathered_words(row.indices, indices + corner) * 3;
+      return right * gathered(row.positions, vertex) + up * gathered(row.positions, vertex + 1) +
+             (back * gathered(row.positions, vertex + 2) + place);
+    };
+    const Float x = row.x + to_float(lane_numbers() + static_cast<std::int32_t>(i));
+    const vec3 corner = corner_ws(0), b = corner_ws(1) - corner, c = corner_ws(2) - corner;
+    const vec3 way =
+        all_lanes(row.origin_ws) + x * all_lanes(row.origin_across_ws) + y * all_lanes(row.origin_down_ws) - corner;
+    const vec3 direction =
+        all_lanes(row.direction_ws) + x * all_lanes(row.direction_across_ws) + y * all_lanes(row.direction_down_ws);
+    const vec3 across = cross(direction, c);
+    const Float inverse = exact_quotient(1.0f, dot(b, across));
+    const Float u = dot(way, across) * inverse, v = dot(direction, cross(way, b)) * inverse;
+    const Float clamped = select(u > 0.0, min(u, 1.0), 0.0);
+    store(&row.u[i], clamped.v);
+    store(&row.v[i], select(v > 0.0, min(v, 1.0f - clamped), 0.0).v);
+  }
+}
+
 }  // namespace
 
 extern const ViewKernels LIGHTWELL_LANES_TABLE(ViewKernels);
-const ViewKernels LIGHTWELL_LANES_TABLE(ViewKernels) = {kInstructions, draw, fill};
+const ViewKernels LIGHTWELL_LANES_TABLE(ViewKernels) = {kInstructions, draw, fill, find_barycentrics};
 
 }  // namespace lightwell::lanes

@@ -49,6 +49,20 @@ struct ViewLeftovers {
   std::uint32_t large_count = 0, beyond_count = 0;
 };
 
+/// Neighbouring pixels of a row of which each sees a triangle of one instance.
+constexpr std::uint32_t kMostRowPixels = 32;
+struct alignas(64) ViewRow {
+  const float* positions;         // as in ViewTriangles
+  const std::uint32_t* indices;   // likewise; of all of the instance
+  float world_from_object[4][3];  // columns
+  float x, y;                     // the first pixel, whose ray is as in ViewRays (renderer/passes/view_rays.h)
+  float origin_ws[3], origin_across_ws[3], origin_down_ws[3];
+  float direction_ws[3], direction_across_ws[3], direction_down_ws[3];
+  std::uint32_t count;
+  std::uint32_t triangle[kMostRowPixels];      // of the instance; those beyond `count` as well
+  float u[kMostRowPixels], v[kMostRowPixels];  // what is found: where the ray meets the triangle
+};
+
 struct ViewKernels {
   const char* instructions;  // what processor they are for
 
@@ -56,6 +70,8 @@ struct ViewKernels {
   void (*draw)(const ViewTriangles& triangles, const ViewTarget& target, ViewLeftovers& leftovers);
   /// Draws the rows `first_px` to `last_px` of a large one.
   void (*fill)(const ViewTriangle& triangle, const ViewTarget& target, std::int32_t first_px, std::int32_t last_px);
+  /// Finds the barycentrics of what pixels see.
+  void (*find_barycentrics)(ViewRow& row);
 };
 
 }  // namespace lightwell::lanes

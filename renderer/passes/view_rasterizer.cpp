@@ -10,30 +10,23 @@
 namespace lightwell {
 namespace {
 
-constexpr int kRowsAtOnce = 8, kPixelsAtOnce = 32;
+constexpr int kRowsAtOnce = 8, kPixelsAtOnce = lanes::kMostRowPixels;
 constexpr int kManyPixels = 4096;  // of what surrounds a triangle: more are drawn by several threads
 
 std::uint32_t triangles_of(const Instance& instance) {
   return static_cast<std::uint32_t>(instance.primitive->indices.size() / 3);
 }
 
-// Where the pixel's ray meets the triangle's plane: Moeller and Trumbore 1997. Clamped, for a sliver's may lie
-// anywhere.
-void find_barycentrics(const ViewRays& rays, glm::ivec2 pixel, const Instance& instance, const std::uint32_t* indices,
-                       Hit& hit) {
-  const std::span<const glm::vec3> positions = positions_of(instance);
-  const auto corner_ws = [&](int i) {
-    return glm::vec3(instance.world_from_object * glm::vec4(positions[indices[i]], 1.0f));
-  };
-  const glm::vec2 at(pixel);
-  const glm::vec3 corner = corner_ws(0), b = corner_ws(1) - corner, c = corner_ws(2) - corner;
-  const glm::vec3 way = rays.origin_ws + at.x * rays.origin_across_ws + at.y * rays.origin_down_ws - corner;
-  const glm::vec3 direction = rays.direction_ws + at.x * rays.direction_across_ws + at.y * rays.direction_down_ws;
-  const glm::vec3 across = glm::cross(direction, c);
-  const float inverse = 1.0f / glm::dot(b, across);
-  const float u = glm::dot(way, across) * inverse, v = glm::dot(direction, glm::cross(way, b)) * inverse;
-  hit.u = u > 0.0f ? std::min(u, 1.0f) : 0.0f;
-  hit.v = v > 0.0f ? std::min(v, 1.0f - hit.u) : 0.0f;
+// But for the place and what is seen there.
+lanes::ViewRow row_of(const ViewRays& rays) {
+  lanes::ViewRow row;
+  lanes::assign(row.origin_ws, rays.origin_ws);
+  lanes::assign(row.origin_across_ws, rays.origin_across_ws);
+  lanes::assign(row.origin_down_ws, rays.origin_down_ws);
+  lanes::assign(row.direction_ws, rays.direction_ws);
+  lanes::assign(row.direction_across_ws, rays.direction_across_ws);
+  lanes::assign(row.direction_down_ws, rays.direction_down_ws);
+  return row;
 }
 
 bool is_large(const lanes::ViewTriangle& triangle) {
@@ -243,9 +236,37 @@ void ViewRasterizer::find_hits(const View& view, glm::ivec2 first, int count, Hi
     const std::span<const glm::vec3> positions = positions_of(scene_.instances[hit.instance]);
     for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&positions[corners[corner]]);
   });
-  for_hits([&](int i, Hit& hit, const std::uint32_t* corners) {
-    find_barycentrics(view.rays, first + glm::ivec2(i, 0), scene_.instances[hit.instance], corners, hit);
-  });
+  find_barycentrics(view.rays, first, {hits + begin, static_cast<std::size_t>(count)});
+}
+
+// A kernel's call for as many pixels side by side as see one instance, or nothing.
+void ViewRasterizer::find_barycentrics(const ViewRays& rays, glm::ivec2 first, std::span<Hit> hits) const {
+  lanes::ViewRow row = row_of(rays);
+  row.y = static_cast<float>(first.y);
+  std::size_t done = 0;
+  while (done < hits.size()) {
+    std::size_t end = done, seen = hits.size();
+    for (; end < hits.size(); ++end) {
+      if (hits[end].t < 0.0f) continue;
+      if (seen == hits.size()) seen = end;
+      if (hits[end].instance != hits[seen].instance) break;
+    }
+    if (seen == hits.size()) return;
+    const Instance& instance = scene_.instances[hits[seen].instance];
+    row.positions = &positions_of(instance).data()->x;
+    row.indices = instance.primitive->indices.data();
+    for (int column = 0; column < 4; ++column)
+      lanes::assign(row.world_from_object[column], glm::vec3(instance.world_from_object[column]));
+    row.x = static_cast<float>(first.x + static_cast<int>(done));
+    row.count = static_cast<std::uint32_t>(end - done);
+    std::fill(std::begin(row.triangle), std::end(row.triangle), hits[seen].triangle);
+    for (std::size_t i = seen; i < end; ++i)
+      if (hits[i].t >= 0.0f) row.triangle[i - done] = hits[i].triangle;
+    kernels_.find_barycentrics(row);
+    for (std::size_t i = seen; i < end; ++i)
+      if (hits[i].t >= 0.0f) hits[i].u = row.u[i - done], hits[i].v = row.v[i - done];
+    done = end;
+  }
 }
 
 }  // namespace lightwell

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "renderer/lanes/view_triangles.h"
@@ -46,6 +47,7 @@ class ViewRasterizer {
   void keep_for_later(const lanes::ViewLeftovers& left, const lanes::ViewTriangles& triangles,
                       const glm::dmat4x3& from_object, double front, const lanes::ViewTarget& target);
   void find_hits(const View& view, glm::ivec2 first, int count, Hit* hits) const;
+  void find_barycentrics(const ViewRays& rays, glm::ivec2 first, std::span<Hit> hits) const;
   std::uint32_t instance_of(std::uint32_t number, std::uint32_t guess) const;
 
   HostTracer& host_;
