@@ -115,14 +115,16 @@ std::vector<Coverage> coverage_of(const Scene& scene, const Pose& pose) {
   return all;
 }
 
-// Of the stages whose time grows with the rays of the indirect map.
-double ms_of_rays(const std::vector<StageTime>& stages) {
-  constexpr std::string_view kOfRays[] = {"directions",      "trace",          "light of hits",
-                                          "shadows of hits", "radiance cache", "reconstruction"};
-  double ms = 0.0;
-  for (const StageTime& stage : stages)
-    if (std::find(std::begin(kOfRays), std::end(kOfRays), stage.name) != std::end(kOfRays)) ms += stage.ms;
-  return ms;
+// The stages of `realtime` whose time grows with the rays of the indirect map, and with its texels.
+FrameTimes times_of(const Frame& frame) {
+  constexpr std::string_view kOfRays[] = {"directions", "trace", "light of hits", "shadows of hits", "radiance cache"};
+  FrameTimes times{frame.total_ms, 0.0, 0.0};
+  for (const StageTime& stage : frame.stages) {
+    if (std::find(std::begin(kOfRays), std::end(kOfRays), stage.name) != std::end(kOfRays))
+      times.of_rays_ms += stage.ms;
+    if (stage.name == "reconstruction") times.of_map_ms += stage.ms;
+  }
+  return times;
 }
 
 // A low-discrepancy point about the pixel's middle, for anti-aliasing over accumulated frames: Roberts 2018 (R2).
@@ -302,8 +304,7 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
   }
   for (const auto& stage : state_->timer.end_frame()) frame.stages.push_back({stage.name, stage.ms});
   frame.total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  if (method_of(request.settings) == Method::kRealtime)
-    view.realtime().budget().note(frame.total_ms, ms_of_rays(frame.stages));
+  if (method_of(request.settings) == Method::kRealtime) view.realtime().budget().note(times_of(frame));
   return frame;
 }
 

@@ -94,7 +94,9 @@ std::span<const ViewKind> all_view_kinds();
 /// `thesis`.
 struct Settings {
   Method method = Method::kThesis;
-  int samples = 32;         // directions per pixel of the indirect map, 1..4096; `realtime` spreads them over 16 frames
+  /// Directions per pixel of the indirect map, 1..4096. `realtime` spreads them over 16 frames; with 8 and less,
+  /// patches of two pixels of the map, with 4 and less of four, have one ray a frame, and their pixels turns.
+  int samples = 32;
   int bounces = 1;          // 0: direct only; 1: first bounce; ... 64, or kUnlimitedBounces
   int indirect_size = 128;  // the indirect map's longer side in pixels, 8..4096
   int patch = 1;            // side of the patches that share directions, pixels of the indirect map: 1, 2, 4, 8 or 16
@@ -118,8 +120,8 @@ struct Settings {
   LightStrategy light_strategy = LightStrategy::kBoth;
   bool photon_guides = true;  // of `reference`: photons tell paths where mirrors throw light from
   /// Of `realtime`, frames a second, 0..240: samples and indirect_size are what the picture has at most, and fewer
-  /// where frames would take longer. What is measured decides, so that pictures differ from run to run; 0: as they are
-  /// set.
+  /// (4 and 32 at least) where frames would take longer. What is measured decides, so that pictures differ from run to
+  /// run; 0: as they are set.
   int target_fps = 0;
   bool temporal_antialiasing = false;  // of `realtime`: pictures of a shifted camera are averaged along what moves
   /// Of `realtime`, 0..kMostFireflyClamp, 0: off. What one sample brings of light that has bounced is scaled down to at

@@ -7,7 +7,9 @@ namespace lightwell {
 
 namespace {
 
-constexpr int kFewestSamples = 16;   // one ray a frame and texel, see kFramesOfSamples of the method
+constexpr int kSamplesOfRay = 16;    // of one ray a frame and texel, see kFramesOfSamples of the method
+constexpr int kSamplesOfPairs = 8;   // of one a frame and patch of two texels
+constexpr int kFewestSamples = 4;    // of one a frame and patch of four
 constexpr int kSmallestMap_px = 32;  // or what is wanted, if that is less
 constexpr double kSmallerSide = 0.75;
 constexpr int kMostLevels = 32;
@@ -20,15 +22,21 @@ struct Quality {
   int samples, indirect_size;
 };
 
-// Samples first: the history makes up for them. A new size of the map forgets it.
+// By how much is lost for the time. Samples first, for the history makes up for them. Patches of two texels that share
+// a ray lose as much for the time as a smaller map, which forgets the history as well. Patches of four save little
+// more, for what goes with the texels stays: last.
 Quality quality_at(const Settings& wanted, int level) {
   Quality quality{wanted.samples, wanted.indirect_size};
   const int smallest_px = std::min(kSmallestMap_px, wanted.indirect_size);
   for (int i = 0; i < level; ++i) {
-    if (quality.samples > kFewestSamples)
-      quality.samples = std::max(quality.samples / 2, kFewestSamples);
-    else
+    if (quality.samples > kSamplesOfRay)
+      quality.samples = std::max(quality.samples / 2, kSamplesOfRay);
+    else if (quality.samples > kSamplesOfPairs)
+      quality.samples = kSamplesOfPairs;
+    else if (quality.indirect_size > smallest_px)
       quality.indirect_size = std::max(static_cast<int>(quality.indirect_size * kSmallerSide), smallest_px);
+    else
+      quality.samples = std::min(quality.samples, kFewestSamples);
   }
   return quality;
 }
@@ -37,10 +45,20 @@ bool is_same(const Quality& a, const Quality& b) {
   return a.samples == b.samples && a.indirect_size == b.indirect_size;
 }
 
+double texels_of(const Quality& quality) {
+  return static_cast<double>(quality.indirect_size) * quality.indirect_size;
+}
+
 // Rays of a frame, in any unit.
 double rays_of(const Quality& quality) {
-  const double texels = static_cast<double>(quality.indirect_size) * quality.indirect_size;
-  return texels * std::max(1, quality.samples / kFewestSamples);
+  const double of_texel = quality.samples > kSamplesOfPairs  ? std::max(1, quality.samples / kSamplesOfRay)
+                          : quality.samples > kFewestSamples ? 0.5
+                                                             : 0.25;
+  return texels_of(quality) * of_texel;
+}
+
+void take_in(double& mean, double value, double share) {
+  mean += share * (value - mean);
 }
 
 }  // namespace
@@ -60,22 +78,24 @@ Settings FrameBudget::within(const Settings& wanted) {
   return settings;
 }
 
-// At another level the part that grows with the rays is taken to follow them.
+// At another level the parts that grow with rays and texels are taken to follow them.
 double FrameBudget::predicted_ms(int level) const {
-  const double now = rays_of(quality_at(wanted_, level_));
-  return total_ms_ - of_rays_ms_ + of_rays_ms_ * rays_of(quality_at(wanted_, level)) / now;
+  const Quality now = quality_at(wanted_, level_), then = quality_at(wanted_, level);
+  return mean_.total_ms + mean_.of_rays_ms * (rays_of(then) / rays_of(now) - 1.0) +
+         mean_.of_map_ms * (texels_of(then) / texels_of(now) - 1.0);
 }
 
-void FrameBudget::note(double total_ms, double of_rays_ms) {
+void FrameBudget::note(const FrameTimes& times) {
   if (wanted_.target_fps == 0) return;
   ++frames_;
   const double share = frames_ <= 2 ? 1.0 : kWeightOfLate;  // the first frame of a level tells little
-  total_ms_ += share * (total_ms - total_ms_);
-  of_rays_ms_ += share * (of_rays_ms - of_rays_ms_);
+  take_in(mean_.total_ms, times.total_ms, share);
+  take_in(mean_.of_rays_ms, times.of_rays_ms, share);
+  take_in(mean_.of_map_ms, times.of_map_ms, share);
   if (frames_ < kFramesToJudge) return;
   const double budget_ms = 1000.0 / wanted_.target_fps;
   int next = level_;
-  if (total_ms_ > budget_ms) {
+  if (mean_.total_ms > budget_ms) {
     calm_frames_ = 0;
     // The best level that fits; where none does, the last that makes a difference.
     while (next < kMostLevels && predicted_ms(next) > budget_ms &&

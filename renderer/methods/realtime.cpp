@@ -12,6 +12,12 @@ namespace {
 // The directions of a texel are spread over so many frames.
 constexpr std::uint32_t kFramesOfSamples = 16;
 
+// Fewer than one a frame: a patch of two or four texels has one, and each texel its turn.
+glm::uvec2 log2_patch_of(std::uint32_t samples) {
+  if (2 * samples > kFramesOfSamples) return {0, 0};
+  return 4 * samples > kFramesOfSamples ? glm::uvec2(1, 0) : glm::uvec2(1, 1);
+}
+
 // While the cache is young all paths go on, to fill it; later one of four.
 constexpr std::uint32_t kFillingFrames = 12, kPathStride = 4;
 
@@ -145,7 +151,9 @@ PatchGrid RealtimeMethod::grid_of(const FrameContext& frame) const {
   PatchGrid grid;
   grid.map_size_px = indirect_map_size(frame.size_px, frame.settings.indirect_size);
   grid.picture_size_px = frame.size_px;
-  grid.rays_per_texel = std::max(1u, static_cast<std::uint32_t>(frame.settings.samples) / kFramesOfSamples);
+  const auto samples = static_cast<std::uint32_t>(frame.settings.samples);
+  grid.rays_per_texel = std::max(1u, samples / kFramesOfSamples);
+  grid.log2_patch = log2_patch_of(samples);
   grid.frame_number = frame_number_;
   grid.seed = frame.settings.seed;
   return grid;
@@ -159,12 +167,16 @@ ReconstructedMap RealtimeMethod::indirect_light(FrameContext& frame, const GBuff
   if (!clamps(frame.settings)) firefly_clamp_pass_.forget();
   if (frame.settings.bounces == 0) return reconstruction_pass_.nothing();
   cache_.begin_frame(frame.pose, change_);
-  const std::uint32_t stride = frame_number_ - filled_from_ < kFillingFrames ? 1 : kPathStride;
+  // Of fewer rays more go on, for the cache would not know light that has bounced twice where it is asked for it.
+  const std::uint32_t stride =
+      frame_number_ - filled_from_ < kFillingFrames ? 1 : std::max(1u, kPathStride / grid.frames_of_patch());
   const PatchSamples& samples = samples_pass_.run(frame, g_buffer, lights_, cache_, grid, stride);
   if (clamps(frame.settings))
     firefly_clamp_pass_.run_over_map(frame, g_buffer, samples, grid, kept_frames(frame.settings));
-  const ReconstructedMap map = reconstruction_pass_.run(g_buffer, frame.scene, samples, grid, previous_clip_from_world,
-                                                        kept_frames(frame.settings));
+  // A texel's frames are those in which it has had rays.
+  const float kept = kept_frames(frame.settings) / static_cast<float>(grid.frames_of_patch());
+  const ReconstructedMap map =
+      reconstruction_pass_.run(g_buffer, frame.scene, samples, grid, previous_clip_from_world, kept);
   frame.timer.mark("reconstruction");
   return map;
 }

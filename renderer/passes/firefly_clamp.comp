@@ -40,7 +40,7 @@ vec3 light_in_picture(GBufferPoint point) {
 #ifdef PIXEL_LIST
   const float pixels = 1.0;
 #else
-  const float pixels = pixels_per_texel.x * pixels_per_texel.y;
+  const float pixels = pixels_per_texel.x * pixels_per_texel.y * float(1 << (log2_patch.x + log2_patch.y));
 #endif
   const vec3 albedo = directional_albedo(point.brdf, max(dot(point.normal_ws, point.to_camera_ws), 0.0));
   return pixels * max(albedo, vec3(1e-4));
@@ -77,8 +77,8 @@ vec2 part_of(uint slot, uint texel_index, GBufferPoint point) {
 void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   const uint slot = group * 64u + gl_LocalInvocationIndex;
-  const uint texel_index = slot % uint(map_size_px.x * map_size_px.y);
-  const ivec2 texel = ivec2(texel_index % uint(map_size_px.x), texel_index / uint(map_size_px.x));
+  const uint texel_index = slot % traced_texels();
+  const ivec2 texel = traced_texel(texel_index);
   vec2 part = vec2(0.0);
   if (slot < sample_count) {
     GBufferPoint point = g_buffer_point(sampled_pixel(texel));

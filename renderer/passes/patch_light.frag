@@ -31,6 +31,7 @@ uniform int has_history;
 const float kPlaneTolerance = 0.02;  // of the distance from the eye
 const float kLeastCosine = 0.9;
 const float kMostRougher = 0.2;
+const float kBorrowedFrames = 0.25;  // that another texel's rays count for
 const float kGreatest = 1e15;
 const float kLateFrames = 6.0;
 const float kMostDeviations = 4.0;   // of the late frames' mean
@@ -104,6 +105,13 @@ History history_at(vec2 before, Sought sought) {
   return history;
 }
 
+// Whether the texel's pixel is of the point's surface.
+bool is_like(ivec2 texel, GBufferPoint point) {
+  const GBufferPoint other = g_buffer_point(sampled_pixel(texel));
+  const float off_plane = abs(dot(other.position_ws - point.position_ws, point.normal_ws));
+  return other.valid && off_plane < kPlaneTolerance * point.view_depth_m && dot(other.normal_ws, point.normal_ws) > kLeastCosine;
+}
+
 void main() {
   const ivec2 texel = ivec2(gl_FragCoord.xy);
   const ivec2 pixel = sampled_pixel(texel);
@@ -116,8 +124,10 @@ void main() {
     out_filtered = vec4(0.0, 0.0, 0.0, -1.0);
     return;
   }
+  const ivec2 traced = traced_texel(traced_index(texel));
+  const bool is_traced = texel == traced;
   // History never lets go of what is not a number, and luminance is squared.
-  const vec3 samples = light_of_samples(uint(texel.y * map_size_px.x + texel.x));
+  const vec3 samples = light_of_samples(traced_index(texel));
   const vec3 now = mix(vec3(0.0), clamp(samples, 0.0, kGreatest), equal(samples, samples));
   const float now_luminance = luminance(now);
   Sought sought = Sought(point.position_ws, point.normal_ws, sqrt(point.brdf.alpha), 1.0 / (kPlaneTolerance * point.view_depth_m));
@@ -131,10 +141,21 @@ void main() {
   const float share = 1.0 / max(history.weight, 1e-6);
   float frames = min(history.weight > 0.0 ? history.frames * share : 0.0, kept_frames);
   frames = frames_left_by_change(ivec2(floor(before + 0.5)), frames);
-  const float fresh = 1.0 / (frames + 1.0);
+  // A texel that has no rays in this frame keeps what it knows; if that is nothing, what its patch has found on the same
+  // surface will do until its turn comes.
+  const bool borrows = !is_traced && history.weight <= 0.0;
+  if (borrows && !is_like(traced, point)) {
+    out_map = vec4(0.0);
+    out_moments = vec4(0.0);
+    out_filtered = vec4(0.0, 0.0, 0.0, -1.0);
+    return;
+  }
+  const float counts = is_traced ? 1.0 : borrows ? kBorrowedFrames : 0.0;
+  const float fresh = counts / max(frames + counts, 1e-6);
+  frames += counts - 1.0;
   out_map = vec4(mix(history.light * share, now, fresh), frames + 1.0);
   out_moments.xy = mix(history.moments.xy * share, vec2(now_luminance, now_luminance * now_luminance), fresh);
-  out_moments.z = mix(history.moments.z * share, now_luminance, max(fresh, 1.0 / kLateFrames));
+  out_moments.z = mix(history.moments.z * share, now_luminance, counts > 0.0 ? max(fresh, 1.0 / kLateFrames) : 0.0);
   out_moments.w = frames + 1.0;
   out_filtered = vec4(out_map.rgb, variance_of_mean(out_moments.xy, out_moments.w));
 }

@@ -61,7 +61,7 @@ PatchSamplesPass::~PatchSamplesPass() = default;
 void PatchSamplesPass::resize(const PatchGrid& grid, bool tells_direct) {
   const std::uint64_t paths = grid.samples();
   Slots& s = *slots_;
-  s.first.resize(paths, paths + grid.texels(), 1, tells_direct);
+  s.first.resize(paths, paths + grid.traced_texels(), 1, tells_direct);
   if (s.walkers != grid.samples() / kSamplesPerWalker) {
     s.walkers = grid.samples() / kSamplesPerWalker;
     for (SampleWave* wave : {s.next.get(), s.later.get()}) {
@@ -84,7 +84,7 @@ const PatchSamples& PatchSamplesPass::run(FrameContext& frame, const GBuffer& g_
   samples_.next_states.attach(s.next->states);
   samples_.next_light.attach(s.next->light);
   samples_.path_stride = path_stride;
-  samples_.path_phase = paths_go_on ? grid.frame_number % path_stride : kNoPhase;
+  samples_.path_phase = paths_go_on ? grid.frame_number / grid.frames_of_patch() % path_stride : kNoPhase;
   samples_.first_next = s.walkers;
   samples_.lamps_sampled = lights.has_sized();
   sample_surfaces(frame, g_buffer, lights, grid);
@@ -99,7 +99,7 @@ const PatchSamples& PatchSamplesPass::run(FrameContext& frame, const GBuffer& g_
             {true, s.first, s.first.states, grid.samples(), *s.next, path_stride, samples_.path_phase, s.walkers,
              grid.samples()});
   frame.timer.mark("light of hits");
-  const std::uint32_t shadow_rays = grid.samples() + (samples_.lamps_sampled ? grid.texels() : 0);
+  const std::uint32_t shadow_rays = grid.samples() + (samples_.lamps_sampled ? grid.traced_texels() : 0);
   // Behind two words a slot lies the light of the lamps.
   programs_->clear_shadows.run(frame, s.first.shadow_rays, shadow_rays, s.first.visible,
                                {s.first.light, 1, 2, grid.samples(), 2 * grid.samples()}, false);

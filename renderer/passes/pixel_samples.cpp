@@ -69,16 +69,17 @@ void PixelSamplesPass::run(FrameContext& frame, const Picture& picture, const gl
   grid.rays_per_texel = kind_ == Kind::kUnmatched ? kRaysOfUnmatched : refracts(frame.scene) ? 2 : 1;
   grid.frame_number = sampling.frame_number;
   grid.seed = frame.settings.seed;
-  wave_.resize(grid.samples(), grid.samples() + grid.texels(), 1, sampling.firefly_clamp != nullptr);
+  wave_.resize(grid.samples(), grid.samples() + grid.traced_texels(), 1, sampling.firefly_clamp != nullptr);
   list_texels_.attach(list);
   list_texels_.bind(UNIT_PIXEL_LIST);
   sample_surfaces(frame, sampling, grid);
   frame.tracer.closest_hit(wave_.rays, grid.samples(), wave_.hits);
   if (kind_ != Kind::kUnmatched)
-    smooth_paths_.run(frame, SmoothPathsPass::Kind::kImages, wave_, grid.samples(), grid.texels(), grid.frame_number);
+    smooth_paths_.run(frame, SmoothPathsPass::Kind::kImages, wave_, grid.samples(), grid.traced_texels(),
+                      grid.frame_number);
   clear_samples_.run(frame, wave_, grid.samples(), grid.frame_number);
   meet_hits(frame, sampling, grid);
-  const std::uint32_t shadow_rays = grid.samples() + (sampling.lights.has_sized() ? grid.texels() : 0);
+  const std::uint32_t shadow_rays = grid.samples() + (sampling.lights.has_sized() ? grid.traced_texels() : 0);
   clear_shadows_.run(frame, wave_.shadow_rays, shadow_rays, wave_.visible,
                      {wave_.light, 1, 2, grid.samples(), 2 * grid.samples()}, false);
   frame.rays += grid.samples() + shadow_rays;
@@ -174,7 +175,7 @@ void PixelSamplesPass::add_light(const FrameContext& frame, const Picture& pictu
   Light& variant = light_.with(defines);
   variant.grid.set(grid);
   variant.sample_count = grid.samples();
-  variant.pixel_count = grid.texels();
+  variant.pixel_count = grid.traced_texels();
   variant.lamps_sampled = sampling.lights.has_sized() ? 1 : 0;
   variant.share = 1.0f / static_cast<float>(picture.accumulated);
   variant.kept_frames = sampling.kept_frames;
@@ -191,7 +192,7 @@ void PixelSamplesPass::add_light(const FrameContext& frame, const Picture& pictu
     sampling.map.guide->bind(UNIT_GUIDE);
   }
   picture.image.bind_image(0, GL_READ_WRITE);
-  variant.program->dispatch(grid.texels());
+  variant.program->dispatch(grid.traced_texels());
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                   GL_SHADER_STORAGE_BARRIER_BIT);
 }

@@ -226,8 +226,8 @@ PathVertex vertex_of(uint slot) {
   at.ray = fetch_ray(int(slot));
   at.next = place_of_next(slot);
 #ifdef FIRST_HITS
-  const uint texels = uint(map_size_px.x * map_size_px.y);
-  const ivec2 texel = ivec2(slot % texels % uint(map_size_px.x), slot % texels / uint(map_size_px.x));
+  const uint texels = traced_texels();
+  const ivec2 texel = traced_texel(slot % texels);
   at.number = sample_number(slot / texels);
   at.place = place_of_texel(texel);
   at.ray_pdf = texelFetch(states_in, int(slot)).a * float(rays_per_texel);

@@ -94,8 +94,8 @@ void sample_refraction(uint slot, NetPlace place, SurfaceFrame at, Brdf through)
 #ifdef HAS_SIZED_LIGHTS
 // Its place among the shadow rays is behind those of the hits.
 void sample_lamp(uint texel_index, NetPlace place, SurfaceFrame at) {
-  const vec2 u = net_2d(place, frame_number, kDecisionLamp);
-  const vec2 u_choice = net_2d(place, frame_number, kDecisionLampChoice);
+  const vec2 u = net_2d(place, own_frame(), kDecisionLamp);
+  const vec2 u_choice = net_2d(place, own_frame(), kDecisionLampChoice);
   const TableSample lamp = sample_sized_light(at.point.position_ws, u, u_choice.x, u_choice.y);
   const vec3 in_direction = lamp.to_light_ws * at.frame;
   float rays_pdf = brdf_pdf(at.brdf, at.out_direction, in_direction);
@@ -120,9 +120,9 @@ void sample_lamp(uint texel_index, NetPlace place, SurfaceFrame at) {
 void main() {
   const uint invocation = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * 64u;
   const uint slot = min(invocation, sample_count - 1u);
-  const uint texels = uint(map_size_px.x * map_size_px.y);
+  const uint texels = traced_texels();
   const uint texel_index = slot % texels;
-  const ivec2 texel = ivec2(texel_index % uint(map_size_px.x), texel_index / uint(map_size_px.x));
+  const ivec2 texel = traced_texel(texel_index);
   SurfaceFrame at;
   at.point = g_buffer_point(sampled_pixel(texel));
 #ifdef REFLECTIONS

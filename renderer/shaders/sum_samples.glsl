@@ -39,7 +39,7 @@ vec3 light_of_lamp(uint texel_index) {
 }
 
 vec3 light_of_samples(uint texel_index) {
-  const uint texels = uint(map_size_px.x * map_size_px.y);
+  const uint texels = traced_texels();
   vec3 sum = vec3(0.0);
   for (uint ray = 0u; ray < rays_per_texel; ++ray) sum += light_of_ray(ray * texels + texel_index);
   return sum / float(rays_per_texel) + light_of_lamp(texel_index);

@@ -63,7 +63,9 @@ void add_transport_options(CLI::App& app, Settings& settings) {
   add_named(app, "--method", settings.method, {Method::kThesis, Method::kRealtime, Method::kReference},
             method_from_name, "How light is found");
   add_integer(app, "--samples", settings.samples, 1, 4096,
-              "Directions per pixel of the indirect map; realtime spreads them over 16 frames");
+              "Directions per pixel of the indirect map; realtime spreads them over 16 frames, with 8 and 4 patches of "
+              "two and four "
+              "pixels share a ray");
   add_integer(app, "--indirect-size", settings.indirect_size, 8, 4096,
               "The longer side of the map in which indirect light is found, in pixels");
   add_thesis_options(app, settings);

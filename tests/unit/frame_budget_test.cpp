@@ -15,12 +15,15 @@ Settings wanted_settings(int target_fps) {
   return settings;
 }
 
-/// A device on which a frame takes so long, and so much more for each ray.
+/// A device on which a frame takes so long, and so much more for each ray and each texel of the map.
 struct Device {
-  double fixed_ms, ray_ns;
+  double fixed_ms, ray_ns, texel_ns = 0.0;
+  double of_map_ms(const Settings& settings) const {
+    return static_cast<double>(settings.indirect_size) * settings.indirect_size * texel_ns * 1e-6;
+  }
   double of_rays_ms(const Settings& settings) const {
-    const double rays = static_cast<double>(settings.indirect_size) * settings.indirect_size * (settings.samples / 16);
-    return rays * ray_ns * 1e-6;
+    const double texels = static_cast<double>(settings.indirect_size) * settings.indirect_size;
+    return texels * settings.samples / 16.0 * ray_ns * 1e-6;
   }
 };
 
@@ -38,8 +41,9 @@ Outcome run(FrameBudget& budget, const Settings& wanted, const Device& device, i
     outcome.settings = budget.within(wanted);
     const double wobble = 1.0 + noise * (frame % 3 - 1);
     const double of_rays_ms = device.of_rays_ms(outcome.settings) * wobble;
-    outcome.ms = device.fixed_ms * wobble + of_rays_ms;
-    budget.note(outcome.ms, of_rays_ms);
+    const double of_map_ms = device.of_map_ms(outcome.settings) * wobble;
+    outcome.ms = device.fixed_ms * wobble + of_rays_ms + of_map_ms;
+    budget.note({outcome.ms, of_rays_ms, of_map_ms});
     if (budget.level() != level) ++outcome.changes;
     level = budget.level();
   }
@@ -81,6 +85,41 @@ TEST(FrameBudget, GivesUpNoMoreThanItMust) {
   EXPECT_GT(device.fixed_ms + device.of_rays_ms(better), 50.0);
 }
 
+TEST(FrameBudget, PatchesOfTwoShareRaysBeforeTheMapBecomesSmaller) {
+  constexpr double kOfMap_ns = 40.0, kRay_ns = 300.0;
+  for (const int samples : {128, 64, 32, 16, 8}) {
+    Settings enough = wanted_settings(30);
+    enough.samples = samples;
+    Device device{0.0, kRay_ns, kOfMap_ns};
+    // Just so much time is left that these samples fit.
+    device.fixed_ms = 1000.0 / 30 - 1.0 - device.of_rays_ms(enough) - device.of_map_ms(enough);
+    FrameBudget budget;
+    const Outcome outcome = run(budget, wanted_settings(30), device, 30);
+    EXPECT_EQ(outcome.settings.samples, samples);
+    EXPECT_EQ(outcome.settings.indirect_size, 256);
+  }
+}
+
+TEST(FrameBudget, PatchesOfFourComeLast) {
+  // Just so much time is left that the smallest map fits with patches of two.
+  Settings enough = wanted_settings(30);
+  enough.samples = 8, enough.indirect_size = 32;
+  Device device{0.0, 3000.0, 400.0};
+  device.fixed_ms = 1000.0 / 30 - 0.05 - device.of_rays_ms(enough) - device.of_map_ms(enough);
+  FrameBudget budget;
+  const Outcome outcome = run(budget, wanted_settings(30), device, 60);
+  EXPECT_EQ(outcome.settings.samples, 8);
+  EXPECT_EQ(outcome.settings.indirect_size, 32);
+}
+
+TEST(FrameBudget, WhatGrowsWithTheMapAloneIsNotExpectedOfFewerRays) {
+  FrameBudget budget;
+  const Outcome outcome = run(budget, wanted_settings(30), {10.0, 20.0, 1000.0}, 40);
+  EXPECT_LE(outcome.ms, 1000.0 / 30);
+  EXPECT_LE(outcome.changes, 2);
+  EXPECT_LT(outcome.settings.indirect_size, 256);
+}
+
 TEST(FrameBudget, DoesNotSwingWhereTimesWobble) {
   FrameBudget budget;
   run(budget, wanted_settings(30), {15.0, 300.0}, 40, 0.1);
@@ -99,7 +138,7 @@ TEST(FrameBudget, ComesBackWhenTheDeviceIsFreeAgain) {
 TEST(FrameBudget, ATargetOutOfReachEndsAtTheLeast) {
   FrameBudget budget;
   const Outcome outcome = run(budget, wanted_settings(240), {100.0, 300.0}, 60);
-  EXPECT_EQ(outcome.settings.samples, 16);
+  EXPECT_EQ(outcome.settings.samples, 4);
   EXPECT_EQ(outcome.settings.indirect_size, 32);
 }
 
