@@ -64,6 +64,7 @@ struct SettingsSpec {
   std::optional<double> depth_threshold;        // a share, 0 or more
   std::optional<std::string> similarity;
   std::optional<bool> trace_missed;
+  std::optional<bool> brute_force;
   std::optional<std::optional<double>> exposure_ev;  // null: automatic
   std::optional<std::string> tone_map;
   std::optional<std::uint32_t> seed;

@@ -113,6 +113,7 @@ void read_settings(const Value& value, SettingsSpec& out) {
   object.optional("depth_threshold", settings.depth_threshold, ReadNumber{0, 10});
   object.optional("similarity", settings.similarity, read_token);
   object.optional("trace_missed", settings.trace_missed, read_boolean);
+  object.optional("brute_force", settings.brute_force, read_boolean);
   object.optional("exposure_ev", settings.exposure_ev, ReadNullable{ReadNumber{-64, 64}});
   object.optional("tone_map", settings.tone_map, read_token);
   object.optional("seed", settings.seed, ReadInteger<std::uint32_t>{0, 0xffffffff});

@@ -208,6 +208,7 @@ Json to_json(const SettingsSpec& settings) {
   give(object, "depth_threshold", settings.depth_threshold);
   give(object, "similarity", settings.similarity);
   give(object, "trace_missed", settings.trace_missed);
+  give(object, "brute_force", settings.brute_force);
   give(object, "exposure_ev", settings.exposure_ev,
        [](const std::optional<double>& ev) { return ev ? number(*ev) : Json(nullptr); });
   give(object, "tone_map", settings.tone_map);

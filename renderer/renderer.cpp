@@ -9,6 +9,7 @@
 
 #include "renderer/check.h"
 #include "renderer/lanes/choose.h"
+#include "renderer/methods/brute_force.h"
 #include "renderer/methods/realtime.h"
 #include "renderer/methods/reference.h"
 #include "renderer/methods/thesis.h"
@@ -155,10 +156,9 @@ struct Renderer::State {
   explicit State(const RendererOptions& options)
       : context(gl::Context::create(options.device)),
         timer(context->device().software),
-        tracer(make_tracer(options, context->device().software)),
-        triangle_groups([options, software = context->device().software] { return make_tracer(options, software); }),
-        buffers(tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
-        view_rasterizer(make_view_rasterizer(options.seen_by, *tracer, context->device().software)),
+        own_tracing([options, software = context->device().software] { return make_tracer(options, software); }),
+        buffers(own_tracing.tracer->name() == "embree" ? gl::BufferUse::kHostVisible : gl::BufferUse::kDevice),
+        view_rasterizer(make_view_rasterizer(options.seen_by, *own_tracing.tracer, context->device().software)),
         view_choice{view_rasterizer.get(), options.seen_by == SeenBy::kProcessor},
         device_scene(shaders, buffers),
         camera("camera", sizeof(CameraBlock)) {
@@ -167,6 +167,7 @@ struct Renderer::State {
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
   }
 
+  Tracing& tracing(bool by_brute_force);
   CameraBlock bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px);
   void show(View& view, const Picture& picture, const FrameRequest& request, Frame& frame);
   void read(const View& view, const Picture& picture, const FrameRequest& request, Frame& frame) const;
@@ -174,8 +175,8 @@ struct Renderer::State {
   std::unique_ptr<gl::Context> context;
   gl::ShaderLibrary shaders;
   gl::StageTimer timer;
-  std::unique_ptr<Tracer> tracer;
-  TriangleGroups triangle_groups;
+  Tracing own_tracing;
+  std::optional<Tracing> brute_force;  // made when it is first asked for
   gl::BufferUse buffers;
   std::unique_ptr<ViewRasterizer> view_rasterizer;  // null: the device draws all
   ViewChoice view_choice;
@@ -184,6 +185,12 @@ struct Renderer::State {
   EnvironmentBlock environment;
   BrdfTable brdf_table{shaders};
 };
+
+Tracing& Renderer::State::tracing(bool by_brute_force) {
+  if (!by_brute_force || own_tracing.tracer->name() == "brute-force") return own_tracing;
+  if (!brute_force) brute_force.emplace(make_brute_force_tracer);
+  return *brute_force;
+}
 
 CameraBlock Renderer::State::bind_frame(const Scene& scene, const FrameRequest& request, glm::vec2 jitter_px) {
   const CameraBlock block = make_camera_block(request.camera, request.size_px, jitter_px);
@@ -235,7 +242,7 @@ gl::Context& Renderer::context() {
 }
 
 std::string_view Renderer::tracer_name() const {
-  return state_->tracer->name();
+  return state_->own_tracing.tracer->name();
 }
 
 std::unique_ptr<RenderView> Renderer::make_view() {
@@ -254,9 +261,16 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
     state_->timer.begin_frame(may_be_given_up ? request.is_unwanted : std::function<bool()>());
     const Pose pose = pose_at(scene, request.time_s);
     state_->device_scene.prepare(scene, pose, request.settings.multiple_scattering);
+    const bool by_brute_force = request.settings.brute_force && method_of(request.settings) == Method::kThesis;
+    if (by_brute_force)
+      if (Status good = check_brute_force(request.settings, request.size_px, state_->device_scene.triangles(),
+                                          state_->context->device().software);
+          !good)
+        return good.error();
     const std::vector<Coverage> coverage = coverage_of(scene, pose);
     const TraceScene trace_scene{pose.instances, coverage, state_->device_scene.positions()};
-    state_->tracer->update(trace_scene);
+    Tracing& tracing = state_->tracing(by_brute_force);
+    tracing.tracer->update(trace_scene);
     if (state_->view_rasterizer) state_->view_rasterizer->update(trace_scene);
     view.accumulated = request.accumulate ? view.accumulated : 0;
     const Method method = method_of(request.settings);
@@ -278,8 +292,8 @@ Result<Frame> Renderer::render(const Scene& scene, const FrameRequest& request, 
                          request.size_px,
                          view.accumulated,
                          request.accumulate,
-                         *state_->tracer,
-                         state_->triangle_groups,
+                         *tracing.tracer,
+                         tracing.triangle_groups,
                          trace_scene,
                          state_->timer,
                          {camera, state_->view_choice}};

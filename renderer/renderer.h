@@ -106,6 +106,9 @@ struct Settings {
   Similarity similarity = Similarity::kCorrected;
   bool trace_missed =
       true;  // a pixel that none of its candidates lies before traces that ray itself (not in the thesis)
+  /// Of `thesis`: every ray tries every triangle, as in its own implementation. Frames in which that would take seconds
+  /// are refused.
+  bool brute_force = false;
   Estimator estimator = Estimator::kCorrected;
   ViewKind view = ViewKind::kFinal;
   int view_index = 0;                // which direction (from 0) or bounce (from 1) the views of one of them show

@@ -32,6 +32,7 @@ class SettingsReader {
     read_value(spec.normal_threshold, settings_.normal_threshold);
     read_value(spec.depth_threshold, settings_.depth_threshold);
     read_value(spec.trace_missed, settings_.trace_missed);
+    read_value(spec.brute_force, settings_.brute_force);
     read_value(spec.samples, settings_.samples);
     read_bounces(spec.bounces);
     read_value(spec.indirect_size, settings_.indirect_size);
@@ -137,6 +138,7 @@ SettingsSpec spec_of(const Settings& settings) {
   spec.depth_threshold = settings.depth_threshold;
   spec.similarity = name_of(settings.similarity);
   spec.trace_missed = settings.trace_missed;
+  spec.brute_force = settings.brute_force;
   spec.exposure_ev.emplace();
   if (settings.exposure_ev) spec.exposure_ev->emplace(*settings.exposure_ev);
   spec.tone_map = name_of(settings.tone_map);

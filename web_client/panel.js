@@ -229,6 +229,9 @@ export class Panel {
     const trace_missed = this.setting("trace_missed", make_toggle, {
       label: "Trace missed rays", hint: "Where no candidate of the patch lies before a pixel, its ray is traced",
     });
+    const brute_force = this.setting("brute_force", make_toggle, {
+      label: "Brute force", hint: "Thesis: rays try every triangle. Refused where that would take seconds",
+    });
     const shadow_size = this.setting("shadow_size", make_slider, {
       label: "Shadow map", values: kShadowSizes, format: (value) => `${value} px`,
     });
@@ -238,7 +241,7 @@ export class Panel {
     const reset = make_wide_button("Reset all settings");
     reset.addEventListener("click", () => this.owner.push({ settings: this.model.default_settings ?? {} }));
     return [estimator.row, patch.row, triangle_groups.row, normal_threshold.row, depth_threshold.row, similarity.row,
-      trace_missed.row, shadow_size.row, shadow_filter.row, reset];
+      trace_missed.row, brute_force.row, shadow_size.row, shadow_filter.row, reset];
   }
 }
 

@@ -206,7 +206,7 @@ const bounces = (value, pointer) => {
 const settings = object({}, {
   method: token, samples: at_least_one, bounces, indirect_size: at_least_one, estimator: token, view: token,
   view_index: index, patch: at_least_one, triangle_groups: at_least_one, normal_threshold: number(-1, 1),
-  depth_threshold: number(0, 10), similarity: token, trace_missed: boolean,
+  depth_threshold: number(0, 10), similarity: token, trace_missed: boolean, brute_force: boolean,
   exposure_ev: nullable(number(-64, 64)), tone_map: token, seed: u32,
   background: nullable(array(number(0), 3, 3)), shadow_size: at_least_one, shadow_filter: at_least_one,
   denoise: boolean, multiple_scattering: boolean, temporal_antialiasing: boolean,

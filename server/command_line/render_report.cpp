@@ -43,6 +43,7 @@ std::map<std::string, std::string> exr_metadata(const RenderArguments& arguments
           {"lightwell:depth_threshold", std::to_string(settings.depth_threshold)},
           {"lightwell:similarity", std::string(name_of(settings.similarity))},
           {"lightwell:trace_missed", settings.trace_missed ? "true" : "false"},
+          {"lightwell:brute_force", settings.brute_force ? "true" : "false"},
           {"lightwell:view_index", std::to_string(settings.view_index)},
           {"lightwell:shadow_size", std::to_string(settings.shadow_size)},
           {"lightwell:shadow_filter", std::to_string(settings.shadow_filter)},

@@ -119,6 +119,10 @@ void add_thesis_options(CLI::App& app, Settings& settings) {
             similarity_from_name, "Depths that differ by less are similar, or, as the thesis prints it, by more");
   app.add_flag("--trace-missed,!--no-trace-missed", settings.trace_missed,
                "Trace a ray anew that none of its patch's candidates lies before");
+  app.add_flag(
+      "--brute-force,!--no-brute-force", settings.brute_force,
+      "thesis: rays try every triangle, up to 4e8 tests a frame on a software device; --tracer brute-force knows "
+      "no limit");
   add_integer(app, "--shadow-size", settings.shadow_size, 64, 4096, "A shadow map's side in pixels");
   add_parsed(app, "--shadow-filter", settings.shadow_filter, parse_shadow_filter, "N",
              "Width of the shadow maps' filter in pixels, odd", std::to_string(settings.shadow_filter));

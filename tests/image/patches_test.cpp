@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "renderer/methods/brute_force.h"
 #include "renderer/scene/builtin.h"
 #include "tests/image/test_scenes.h"
 
@@ -49,6 +50,40 @@ View builtin_view(const char* name) {
 
 Pixels show(const View& view, const Settings& settings) {
   return render(view.scene, view.camera, settings, kSizePx);
+}
+
+TEST(BruteForce, FindsWhatTheHierarchyFinds) {
+  const View view = builtin_view("cornell");
+  for (const int patch : {1, 2}) {
+    Settings settings = patch_settings(patch, patch);
+    const Pixels by_hierarchy = show(view, settings);
+    settings.brute_force = true;
+    EXPECT_LT(relative_error(show(view, settings), by_hierarchy), 1e-6) << "patches of " << patch;
+    settings.trace_missed = false;
+    show(view, settings);
+  }
+}
+
+TEST(BruteForce, IsRefusedWhereItTakesSecondsAndHarmsNoOther) {
+  Settings settings = patch_settings(1);
+  settings.brute_force = true;
+  settings.samples = 4096;  // times 48^2 pixels times 34 triangles: 3.2e8 tests
+  EXPECT_EQ(check_brute_force(settings, kSizePx, 34, true).ok(), true);
+  EXPECT_EQ(check_brute_force(settings, kSizePx, 1522, false).ok(), true);
+  const View view = builtin_view("helicopters");
+  FrameRequest request;
+  request.camera = view.camera;
+  request.size_px = kSizePx;
+  request.settings = settings;
+  const auto render_view = shared_renderer().make_view();
+  const Result<Frame> refused = shared_renderer().render(view.scene, request, *render_view);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kTooLarge);
+  EXPECT_NE(refused.error().message().find("9437184 rays that try 1522 triangles"), std::string::npos)
+      << refused.error().message();
+  request.settings.brute_force = false;
+  request.settings.samples = 1;
+  EXPECT_TRUE(shared_renderer().render(view.scene, request, *render_view).ok());
 }
 
 TEST(Patches, OfOnePixelInAnyNumberOfGroupsChangeNothing) {

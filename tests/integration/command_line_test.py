@@ -264,7 +264,7 @@ class RenderTest(CommandLineTest):
 
     def test_every_choice_renders(self):
         for option in [["--bounces", "0"], ["--bounces", "3"], ["--estimator", "literal"], ["--denoise"],
-                       ["--patch", "4"], ["--patch", "2", "--triangle-groups", "3", "--no-trace-missed"],
+                       ["--patch", "4"], ["--patch", "2", "--triangle-groups", "3", "--no-trace-missed"], ["--patch", "2", "--brute-force"],
                        ["--patch", "8", "--similarity", "literal", "--normal-threshold", "0.5", "--depth-threshold", "1"],
                        ["--view", "bounce", "--view-index", "1"], ["--view", "patch", "--patch", "4"],
                        ["--multiple-scattering"], ["--method", "realtime", "--temporal-antialiasing"], ["--method", "realtime", "--firefly-clamp", "10"],

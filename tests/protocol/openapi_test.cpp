@@ -128,6 +128,7 @@ TEST(OpenApi, ListsEverySettingAndNoOther) {
   all.normal_threshold = all.depth_threshold = all.firefly_clamp = 0.5;
   all.similarity = "x";
   all.trace_missed = true;
+  all.brute_force = true;
   all.exposure_ev.emplace();
   all.background.emplace();
   all.seed = 0u;
