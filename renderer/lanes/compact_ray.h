@@ -155,16 +155,6 @@ class CompactRay {
   }
 
  private:
-  // A child that may be met, and from where on: the bits of a distance, which is not negative, before the child.
-  // Nearer ones are less.
-  using Pending = std::uint64_t;
-
-  static std::uint32_t bits_of(float distance) {
-    std::uint32_t bits;
-    __builtin_memcpy(&bits, &distance, sizeof bits);
-    return bits;
-  }
-
   template <class ChildAt>
   bool go_to(const MetByRay& met, const ChildAt& child_at) {
     std::uint32_t left = met.lanes;

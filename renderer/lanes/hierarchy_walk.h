@@ -46,16 +46,6 @@ class HierarchyWalk {
   }
 
  private:
-  // A child that may be met, and from where on: the bits of a distance, which is not negative, before WideNode::child.
-  // Nearer ones are less.
-  using Pending = std::uint64_t;
-
-  static std::uint32_t bits_of(float distance) {
-    std::uint32_t bits;
-    __builtin_memcpy(&bits, &distance, sizeof bits);
-    return bits;
-  }
-
   // The nearest comes to lie on top.
   void push_children(const WideNode& node, float far) {
     const std::uint32_t bottom = size_;

@@ -10,6 +10,16 @@ namespace {
 constexpr float kNothing = __builtin_inff();
 constexpr float kEdgeTolerance = 1e-6f;  // of barycentrics: rounding, so that no ray passes between two triangles
 
+// A child of a node that may be met, and from where on: the bits of a distance, which is not negative, before its
+// number. Nearer ones are less.
+using Pending = std::uint64_t;
+
+[[maybe_unused]] std::uint32_t bits_of(float distance) {
+  std::uint32_t bits;
+  __builtin_memcpy(&bits, &distance, sizeof bits);
+  return bits;
+}
+
 // What rays have met so far.
 struct MetRows {
   PixelFloats &t, &u, &v;

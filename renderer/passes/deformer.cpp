@@ -31,10 +31,12 @@ void Deformer::Dispatch::add(DeviceTask task) {
 }
 
 void Deformer::run(const std::vector<DeformTask>& tasks, DeviceGeometry& geometry) {
-  if (!geometry.becomes(tasks)) deform(tasks, geometry);
   const auto* positions = reinterpret_cast<const glm::vec3*>(geometry.positions().host());
+  if (!geometry.becomes(tasks)) {
+    deform(tasks, geometry);
+    if (positions) gl::wait_for_device();
+  }
   if (!positions) return;
-  gl::wait_for_device();
   for (const DeformTask& task : tasks)
     task.shape->take_positions({positions + task.first_vertex, task.shape->vertex_count()});
 }

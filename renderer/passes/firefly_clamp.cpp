@@ -19,14 +19,9 @@ struct Totals {
 
 FireflyClampPass::Clamp::Clamp(const gl::ProgramPtr& p)
     : program(p),
-      grid(p),
-      sample_count(p, "sample_count"),
-      path_stride(p, "path_stride"),
-      path_phase(p, "path_phase"),
-      first_next(p, "first_next"),
+      sums(p),
       first_direct(p, "first_direct"),
       part_count(p, "part_count"),
-      lamps_sampled(p, "lamps_sampled"),
       firefly_clamp(p, "firefly_clamp") {}
 
 FireflyClampPass::FireflyClampPass(gl::ShaderLibrary& shaders)
@@ -41,19 +36,11 @@ void FireflyClampPass::run_over_map(FrameContext& frame, const GBuffer& g_buffer
                                     const PatchGrid& grid, float kept_frames) {
   is_new_ = false;
   g_buffer.bind();
-  samples.states.bind(UNIT_SAMPLE_STATES);
-  samples.light.bind(UNIT_SAMPLE_LIGHT);
-  samples.visible.bind(UNIT_SAMPLE_VISIBLE);
-  samples.next_states.bind(UNIT_NEXT_STATES);
-  samples.next_light.bind(UNIT_NEXT_LIGHT);
   const gl::Defines defines = gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines());
   for (const bool measures : {true, false}) {
     const gl::Defines step = measures ? gl::Defines{"MEASURE 1"} : gl::Defines{};
     Clamp& clamp = clamp_.with(gl::joined(defines, step));
-    clamp.path_stride = samples.path_stride;
-    clamp.path_phase = samples.path_phase;
-    clamp.first_next = samples.first_next;
-    clamp.lamps_sampled = samples.lamps_sampled ? 1 : 0;
+    clamp.sums.set(grid, samples);
     clamp.firefly_clamp = frame.settings.firefly_clamp;
     Sums& sums = sums_.with(step);
     sums.kept_frames = kept_frames;
@@ -65,7 +52,7 @@ void FireflyClampPass::run_over_map(FrameContext& frame, const GBuffer& g_buffer
 void FireflyClampPass::run_over_pixels(const FrameContext& frame, const gl::Buffer& light, const PatchGrid& grid,
                                        bool lamps_sampled, const gl::Defines& defines) {
   Clamp& clamp = clamp_.with(gl::joined(gl::joined(frame.scene.brdf_defines(), frame.scene.smooth_defines()), defines));
-  clamp.lamps_sampled = lamps_sampled ? 1 : 0;
+  clamp.sums.set(grid, lamps_sampled);
   clamp.firefly_clamp = frame.settings.firefly_clamp;
   dispatch(clamp, sums_.with({}), light, grid);
 }
@@ -78,8 +65,6 @@ void FireflyClampPass::dispatch(Clamp& clamp, Sums& sums, const gl::Buffer& ligh
   light.bind_storage(BINDING_SAMPLE_LIGHT);
   parts_.bind_storage(BINDING_FIREFLY_PARTS);
   totals_.bind_storage(BINDING_FIREFLY_SUMS);
-  clamp.grid.set(grid);
-  clamp.sample_count = grid.samples();
   clamp.first_direct = first_direct(grid);
   clamp.part_count = parts;
   clamp.program->dispatch(grid.samples(), kGroup);

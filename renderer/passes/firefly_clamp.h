@@ -7,6 +7,7 @@
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/patch_grid.h"
 #include "renderer/passes/patch_samples.h"
+#include "renderer/passes/sample_sums.h"
 
 namespace lightwell {
 
@@ -35,9 +36,8 @@ class FireflyClampPass {
   struct Clamp {
     explicit Clamp(const gl::ProgramPtr& p);
     gl::ProgramPtr program;
-    PatchGridUniforms grid;
-    gl::Uniform<std::uint32_t> sample_count, path_stride, path_phase, first_next, first_direct, part_count;
-    gl::Uniform<int> lamps_sampled;
+    SampleSumUniforms sums;
+    gl::Uniform<std::uint32_t> first_direct, part_count;
     gl::Uniform<float> firefly_clamp;
   };
   struct Sums {

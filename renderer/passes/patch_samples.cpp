@@ -53,6 +53,14 @@ struct PatchSamplesPass::Programs {
   SmoothPathsPass smooth_paths;
 };
 
+void PatchSamples::bind() const {
+  states.bind(UNIT_SAMPLE_STATES);
+  light.bind(UNIT_SAMPLE_LIGHT);
+  visible.bind(UNIT_SAMPLE_VISIBLE);
+  next_states.bind(UNIT_NEXT_STATES);
+  next_light.bind(UNIT_NEXT_LIGHT);
+}
+
 PatchSamplesPass::PatchSamplesPass(gl::ShaderLibrary& shaders, gl::BufferUse buffers)
     : programs_(std::make_unique<Programs>(shaders, buffers)), slots_(std::make_unique<Slots>(buffers)) {}
 

@@ -23,6 +23,9 @@ struct PatchSamples {
   std::uint32_t path_stride = 1, path_phase = 0;  // which rays' paths went on beyond their hits
   std::uint32_t first_next = 0;                   // and the place of the first of them
   bool lamps_sampled = false;                     // lights with a size were sampled at the pixels themselves
+
+  /// Where shaders/sum_samples.glsl reads them.
+  void bind() const;
 };
 
 class PatchSamplesPass {

@@ -38,10 +38,8 @@ const char* stage_of(PixelSamplesPass::Kind kind) {
 
 PixelSamplesPass::Light::Light(const gl::ProgramPtr& p)
     : program(p),
-      grid(p),
-      sample_count(p, "sample_count"),
+      sums(p),
       pixel_count(p, "pixel_count"),
-      lamps_sampled(p, "lamps_sampled"),
       share(p, "share"),
       kept_frames(p, "kept_frames"),
       all_rests(p, "all_rests"),
@@ -173,10 +171,8 @@ void PixelSamplesPass::add_light(const FrameContext& frame, const Picture& pictu
     reflections_.bind_storage(BINDING_REFLECTIONS);
   }
   Light& variant = light_.with(defines);
-  variant.grid.set(grid);
-  variant.sample_count = grid.samples();
+  variant.sums.set(grid, sampling.lights.has_sized());
   variant.pixel_count = grid.traced_texels();
-  variant.lamps_sampled = sampling.lights.has_sized() ? 1 : 0;
   variant.share = 1.0f / static_cast<float>(picture.accumulated);
   variant.kept_frames = sampling.kept_frames;
   variant.all_rests = sampling.all_rests ? 1.0f : 0.0f;

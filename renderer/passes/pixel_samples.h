@@ -50,9 +50,8 @@ class PixelSamplesPass {
   struct Light {
     explicit Light(const gl::ProgramPtr& p);
     gl::ProgramPtr program;
-    PatchGridUniforms grid;
-    gl::Uniform<std::uint32_t> sample_count, pixel_count;
-    gl::Uniform<int> lamps_sampled;
+    SampleSumUniforms sums;
+    gl::Uniform<std::uint32_t> pixel_count;
     gl::Uniform<float> share, kept_frames, all_rests;
     gl::Uniform<glm::mat4> previous_clip_from_world;
   };

@@ -18,12 +18,7 @@ gl::ProgramPtr filter_step(gl::ShaderLibrary& shaders, const gl::Defines& define
 
 ReconstructionPass::Light::Light(const gl::ProgramPtr& p)
     : program(p),
-      grid(p),
-      sample_count(p, "sample_count"),
-      path_stride(p, "path_stride"),
-      path_phase(p, "path_phase"),
-      first_next(p, "first_next"),
-      lamps_sampled(p, "lamps_sampled"),
+      sums(p),
       has_history(p, "has_history"),
       previous_clip_from_world(p, "previous_clip_from_world"),
       kept_frames(p, "kept_frames") {}
@@ -58,23 +53,13 @@ ReconstructedMap ReconstructionPass::run(const GBuffer& g_buffer, const DeviceSc
                                          float kept_frames) {
   std::swap(now_, before_);
   g_buffer.bind();
-  samples.states.bind(UNIT_SAMPLE_STATES);
-  samples.light.bind(UNIT_SAMPLE_LIGHT);
-  samples.visible.bind(UNIT_SAMPLE_VISIBLE);
-  samples.next_states.bind(UNIT_NEXT_STATES);
-  samples.next_light.bind(UNIT_NEXT_LIGHT);
   before_.map.bind(UNIT_IMAGE_A);
   before_.moments.bind(UNIT_IMAGE_B);
   before_.guide.bind(UNIT_IMAGE_C);
   gl::Defines defines = scene.brdf_defines();
   if (g_buffer.has_motion) defines.emplace_back("MOTION 1");
   Light& light = light_.with(defines);
-  light.grid.set(grid);
-  light.sample_count = grid.samples();
-  light.path_stride = samples.path_stride;
-  light.path_phase = samples.path_phase;
-  light.first_next = samples.first_next;
-  light.lamps_sampled = samples.lamps_sampled ? 1 : 0;
+  light.sums.set(grid, samples);
   light.has_history = has_history_ ? 1 : 0;
   light.previous_clip_from_world = previous_clip_from_world;
   light.kept_frames = kept_frames;

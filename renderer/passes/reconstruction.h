@@ -7,6 +7,7 @@
 #include "renderer/passes/g_buffer.h"
 #include "renderer/passes/patch_grid.h"
 #include "renderer/passes/patch_samples.h"
+#include "renderer/passes/sample_sums.h"
 
 namespace lightwell {
 
@@ -37,9 +38,8 @@ class ReconstructionPass {
   struct Light {
     explicit Light(const gl::ProgramPtr& p);
     gl::ProgramPtr program;
-    PatchGridUniforms grid;
-    gl::Uniform<std::uint32_t> sample_count, path_stride, path_phase, first_next;
-    gl::Uniform<int> lamps_sampled, has_history;
+    SampleSumUniforms sums;
+    gl::Uniform<int> has_history;
     gl::Uniform<glm::mat4> previous_clip_from_world;
     gl::Uniform<float> kept_frames;
   };

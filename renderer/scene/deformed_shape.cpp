@@ -47,6 +47,10 @@ DeformedVertices DeformedShape::vertices() const {
   return vertices;
 }
 
+std::span<const glm::vec3> positions_of(const Primitive& primitive, const DeformedShape* deformed) {
+  return deformed ? deformed->positions() : std::span<const glm::vec3>(primitive.positions);
+}
+
 bool same_shape(const std::shared_ptr<const DeformedShape>& a, const std::shared_ptr<const DeformedShape>& b) {
   return a == b || (a && b && a->same_as(*b));
 }

@@ -54,6 +54,9 @@ class DeformedShape {
   mutable std::vector<glm::vec3> positions_;
 };
 
+/// Of a primitive's vertices, on the processor; `deformed`: null if it is rigid.
+std::span<const glm::vec3> positions_of(const Primitive& primitive, const DeformedShape* deformed);
+
 /// Whether two instances have the same shape; a rigid one has none.
 bool same_shape(const std::shared_ptr<const DeformedShape>& a, const std::shared_ptr<const DeformedShape>& b);
 

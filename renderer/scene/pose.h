@@ -19,7 +19,7 @@ struct Instance {
 
 /// An instance's vertices in its own space, on the processor.
 inline std::span<const glm::vec3> positions_of(const Instance& instance) {
-  return instance.deformed ? instance.deformed->positions() : std::span<const glm::vec3>(instance.primitive->positions);
+  return positions_of(*instance.primitive, instance.deformed.get());
 }
 
 struct PlacedLight {

@@ -34,8 +34,7 @@ template <class Body>
 void for_triangles(const GeometryGroup& group, const Body& body) {
   for (std::uint32_t p = 0; p < group.key.primitives.size(); ++p) {
     const Primitive& primitive = *group.key.primitives[p];
-    const std::span<const glm::vec3> positions =
-        group.deformed ? group.deformed->positions() : std::span<const glm::vec3>(primitive.positions);
+    const std::span<const glm::vec3> positions = positions_of(primitive, group.deformed.get());
     for (std::uint32_t t = 0; t < primitive.indices.size() / 3; ++t) {
       const std::uint32_t* corners = &primitive.indices[std::size_t{3} * t];
       body(p, t, std::array<glm::vec3, 3>{positions[corners[0]], positions[corners[1]], positions[corners[2]]});

@@ -40,8 +40,7 @@ void reject_uncovered(const RTCFilterFunctionNArguments* arguments) {
 EmbreeGeometry make_triangles(RTCDevice device, const Primitive& primitive, const DeformedShape* deformed,
                               bool filtered) {
   EmbreeGeometry geometry{rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE)};
-  const std::span<const glm::vec3> positions =
-      deformed ? deformed->positions() : std::span<const glm::vec3>(primitive.positions);
+  const std::span<const glm::vec3> positions = positions_of(primitive, deformed);
   // Embree's own vertex buffer: it reads beyond the last vertex, which a std::vector does not allow.
   void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(glm::vec3), positions.size());
